@@ -47,9 +47,10 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
   }
 
   /// Of sigma = |q|^(3/2), Kepler's third law.
-  double time_scale_rate(const State<Pair<2>>& s) const {
-    return 1.5 * s.object.dot(s.momentum) / s.object.squaredNorm();
+  template <class S> S time_scale_rate(const Vector<S, 2>& q, const Vector<S, 2>& p) const {
+    return q.dot(p) * 1.5 / q.squaredNorm();
   }
+  double time_scale_rate(const State<Pair<2>>& s) const { return time_scale_rate(s.object, s.momentum); }
 
   /// The same at the middle of an arrow (HasTimeScaleOfArrows).
   template <class S> S time_scale(const PairArrow<S, 2>& g) const {

@@ -11,13 +11,13 @@ from parts import examples, of_part, run
 
 class Gradients(unittest.TestCase):
     def test_gradients_of_steps_that_vary_and_of_splittings(self):
-        for scene, settings in (("pendulum_adaptive", ()), ("pendulum", ("--set", "time.method=splitting", "--set", "time.order=4"))):
+        for scene, settings in (("pendulum_adaptive", ()), ("pendulum", ("--set", "time.mode=controlled")), ("pendulum", ("--set", "time.method=splitting", "--set", "time.order=4"))):
             told = run(of_part("pendulum"), "gradient", examples / f"{scene}.toml", "--set", "time.steps=30", *settings, "--check",
                        "--json")
             self.assertEqual(told.returncode, 0, told.stderr)
             found = json.loads(told.stdout)
             self.assertGreater(found["digits_agreed"], 7)
-            self.assertEqual("final.t" in found["of"], scene == "pendulum_adaptive")
+            self.assertEqual("final.t" in found["of"], "time.method=splitting" not in settings)
         told = run(of_part("pendulum"), "gradient", examples / "pendulum_adaptive.toml", "--set", "time.steps=1", "--of", "final.time",
                    "--json")
         found = json.loads(told.stdout)
@@ -26,6 +26,56 @@ class Gradients(unittest.TestCase):
         told = run(of_part("pendulum"), "gradient", examples / "pendulum_adaptive.toml", "--set", "parameters.quadrature=trapezoid")
         self.assertEqual(told.returncode, 3, told.stderr)
         self.assertIn("has no root", told.stderr)
+
+    def test_where_differences_tell_nothing_it_says_so(self):
+        # At the start nothing has moved: differences are the derivatives to rounding.
+        words = ("gradient", examples / "pendulum.toml", "--set", "time.steps=5", "--of", "node.0.position", "--check")
+        found = json.loads(run(of_part("pendulum"), *words, "--json").stdout)
+        self.assertTrue(found["within_rounding"])
+        self.assertLess(found["digits_agreed"], 13)
+        self.assertIn("their rounding leaves", run(of_part("pendulum"), *words).stdout)
+
+    def test_fits_go_between_the_nodes_of_steps_that_vary(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for mode, step in (("controlled", 0.02), ("adaptive", 0.02)):
+                more = ("--set", f"time.mode={mode}", "--set", f"time.step={step}", "--set", "time.steps=120", "--set",
+                        "parameters.quadrature=midpoint")
+                out = pathlib.Path(folder) / mode
+                told = run(of_part("pendulum"), "run", examples / "pendulum.toml", *more, "--set", "parameters.length=1.1", "--out", out)
+                self.assertEqual(told.returncode, 0, told.stderr)
+                told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", out / "trajectory.csv", *more, "--wrt",
+                           "parameters.length,initial.momentum", "--json")
+                self.assertEqual(told.returncode, 0, told.stderr)
+                found = json.loads(told.stdout)
+                # Nodes of the run with the other length are times between those of the fitted one, and at the solution they are its own.
+                self.assertLess(abs(found["unknowns"][1]["value"] - 1.1), 1e-8, told.stdout)
+
+    def test_what_was_fitted_is_carried_on_with_its_covariance(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "fit.json"
+            told = run(of_part("damped_pendulum"), "fit", examples / "damped_pendulum.toml", examples / "measured_pendulum.csv",
+                       "--wrt", "initial,parameters.length,parameters.damping", "--sigma", "q=0.01", "--json")
+            file.write_text(told.stdout)
+            fitted = json.loads(told.stdout)
+            scene = ("gradient", examples / "damped_pendulum.toml", "--set", "time.steps=300", "--of", "final,node.0.position")
+            told = run(of_part("damped_pendulum"), *scene, "--covariance", file, "--draws", "400", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertEqual(found["by"], [each["name"] for each in fitted["unknowns"]])
+            # The start is the fitted one, as well known as the fit says.
+            self.assertAlmostEqual(found["values"][-1], fitted["unknowns"][0]["value"], delta=1e-12)
+            self.assertAlmostEqual(found["covariance"][-1][-1] / fitted["covariance"][0][0], 1, delta=1e-9)
+            for i in range(2):  # five deviations of a variance of 400 draws
+                self.assertAlmostEqual(found["draws"]["covariance"][i][i] / found["covariance"][i][i], 1, delta=5 * (2 / 399) ** 0.5)
+            # As independent errors of the same sizes they would be others.
+            errors = ",".join(f"{each['name']}={each['deviation']}" for each in fitted["unknowns"])
+            apart = json.loads(run(of_part("damped_pendulum"), *scene, "--deviations", errors, "--json").stdout)
+            self.assertGreater(abs(apart["covariance"][0][0] / found["covariance"][0][0] - 1), 0.1)
+            for text, said in (("{}", "it has no unknowns"), ('{"unknowns":[{"name":"parameters.length","value":1,"deviation":null}]}', "is not told")):
+                file.write_text(text)
+                told = run(of_part("damped_pendulum"), *scene, "--covariance", file)
+                self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+                self.assertIn(said, told.stderr)
 
     def test_gradients_of_costs_of_boundary_values(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -42,6 +92,69 @@ class Gradients(unittest.TestCase):
             told = run(of_part("pendulum"), "gradient", scene, "--of", "final.position")
             self.assertEqual(told.returncode, 2)
             self.assertIn("ask for cost", told.stderr)
+
+    def test_gradients_of_scenes_of_bodies(self):
+        # Free bodies and tops, chains and closed loops, springs and dampers, rolling and steering, a support that moves.
+        for scene in ("figure_eight", "foucault", "rolling_balls", "six_bar", "snakeboard", "spring_pendulum", "steering", "three_links",
+                      "tops", "tumbling_book", "two_ways_to_roll", "upside_down"):
+            told = run(of_part("bodies"), "gradient", examples / f"{scene}.toml", "--set", "time.steps=20", "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            self.assertGreater(json.loads(told.stdout)["digits_agreed"], 8, scene)
+
+    def test_gradients_by_the_numbers_of_most_joints_and_effects(self):
+        scene = pathlib.Path(__file__).parent / "data" / "many_bodies.toml"
+        told = run(of_part("bodies"), "gradient", scene, "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertEqual(len(found["by"]), 92)
+        self.assertGreater(found["digits_agreed"], 8)
+
+    def test_gradients_of_bodies_are_of_the_scene_as_it_is_edited(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "fall.toml"
+            scene.write_text('[[body]]\nkind = "point"\nname = "stone"\nmass = 2.0\nposition = [0, 0, 0]\nvelocity = [0, 0, 3]\n'
+                             '[[effect]]\nname = "weight"\nkind = "gravity"\nacceleration = [0, 0, -9.81]\n'
+                             '[[effect]]\nkind = "drag"\nmotion = 0.4\n[time]\nstep = 0.1\nsteps = 10\n')
+            told = run(of_part("bodies"), "gradient", scene, "--of", "final.stone.z,final.stone.pz", "--wrt",
+                       "initial.stone.pz,parameters.stone.mass,parameters.weight.acceleration.2,parameters.effect.1.motion", "--check",
+                       "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertGreater(found["digits_agreed"], 10)
+            told = run(of_part("bodies"), "run", scene, "--set", "body.0.mass=2.0001", "--out", pathlib.Path(folder) / "heavier")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            last = (pathlib.Path(folder) / "heavier" / "trajectory.csv").read_text().split()[-1].split(",")
+            self.assertAlmostEqual((float(last[3]) - found["values"][0]) / 1e-4, found["derivatives"][0][1], delta=1e-4)
+
+    def test_gradients_of_composed_steps_of_bodies(self):
+        told = run(of_part("bodies"), "gradient", examples / "three_links.toml", "--set", "time.steps=10", "--set", "time.order=6", "--of",
+                   "final.momentum,final.position", "--wrt", "parameters", "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertGreater(json.loads(told.stdout)["digits_agreed"], 8)
+
+    def test_numbers_that_tear_joints_have_no_derivative(self):
+        for scene, number, why in (("three_links", "joint.0.points.0.0", "a scene with another one is refused (joint.0.points"),
+                                   ("six_bar", "joint.0.axis.0", "equations of the joints that depend on others would not")):
+            told = run(of_part("bodies"), "gradient", examples / f"{scene}.toml", "--wrt", f"parameters.{number}")
+            self.assertEqual(told.returncode, 2, told.stdout)
+            self.assertIn(why, told.stderr)
+        for scene, settings, why in (("pythagorean", "event=[]", "by equal steps"),
+                                     ("spring_pendulum", 'event=[{name = "e", when = "bob.x"}]', "no derivatives through events")):
+            told = run(of_part("bodies"), "gradient", examples / f"{scene}.toml", "--set", settings)
+            self.assertEqual(told.returncode, 2, told.stdout)
+            self.assertIn(why, told.stderr)
+
+    def test_numbers_of_bodies_are_fitted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = (examples / "spring_pendulum.toml", "--set", "time.steps=200")
+            told = run(of_part("bodies"), "run", *scene, "--set", "effect.1.stiffness=32", "--set", "body.0.mass=1.1", "--out", folder)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            told = run(of_part("bodies"), "fit", *scene[:1], pathlib.Path(folder) / "trajectory.csv", *scene[1:], "--wrt",
+                       "parameters.effect.1.stiffness,parameters.bob.mass", "--json")
+            self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+            found = [unknown["value"] for unknown in json.loads(told.stdout)["unknowns"]]
+            self.assertAlmostEqual(found[0], 32, delta=32e-9)
+            self.assertAlmostEqual(found[1], 1.1, delta=1e-9)
 
 
 if __name__ == "__main__":

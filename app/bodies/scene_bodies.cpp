@@ -9,6 +9,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace lagroid::app {
@@ -23,8 +24,32 @@ KeyOf<NumberArray> vector_key(std::string name, std::string unit, std::string me
   return key;
 }
 
-Vec vector_at(const Section& table, const KeyOf<NumberArray>& key) {
-  return Eigen::Map<const Vec>(read_key(table, key).data());
+template <class S> S BasicSceneBodies<S>::varied_number(const std::string& key, double x) const {
+  if constexpr (!std::is_same_v<S, double>)
+    for (const VariedAt& each : varied)
+      if (each.path == reads + "." + key) {
+        each.is_read = true;
+        return S::variable(x, each.direction);
+      }
+  return x;
+}
+
+template <class S>
+std::vector<S> BasicSceneBodies<S>::numbers(const Section& table, const KeyOf<NumberArray>& key) const {
+  std::vector<S> out;
+  for (const double x : read_key(table, key))
+    out.push_back(varied_number(fmt::format("{}.{}", key.name, out.size()), x));
+  return out;
+}
+
+template <class S> Vector<S, 3> BasicSceneBodies<S>::vector(const Section& table, const KeyOf<NumberArray>& key) const {
+  return varied_vector(key.name, read_key(table, key));
+}
+template <class S>
+Vector<S, 3> BasicSceneBodies<S>::varied_vector(const std::string& key, const std::vector<double>& x) const {
+  Vector<S, 3> out;
+  for (int i = 0; i < 3; ++i) out(i) = varied_number(fmt::format("{}.{}", key, i), x[std::size_t(i)]);
+  return out;
 }
 
 namespace {
@@ -75,13 +100,14 @@ const KeyOf<Flag> project_velocities{"project_velocities",
                                      "else they are refused",
                                      false};
 
-Vec read_moments(const Section& table, const KeyOf<NumberArray>& key) {
-  const Vec inertia = vector_at(table, key);
+template <class S>
+Vector<S, 3> read_moments(const BasicSceneBodies<S>& bodies, const Section& table, const KeyOf<NumberArray>& key) {
+  const Vector<S, 3> inertia = bodies.vector(table, key);
   for (int i = 0; i < 3; ++i) {
-    const double others = inertia((i + 1) % 3) + inertia((i + 2) % 3);
-    if (inertia(i) > others * (1 + 1e-12))
-      table.fail("inertia",
-                 fmt::format("no body has these moments: {:.8g} is more than the sum of the others", inertia(i)));
+    const double others = value_of(inertia((i + 1) % 3)) + value_of(inertia((i + 2) % 3));
+    if (value_of(inertia(i)) > others * (1 + 1e-12))
+      table.fail("inertia", fmt::format("no body has these moments: {:.8g} is more than the sum of the others",
+                                        value_of(inertia(i))));
   }
   return inertia;
 }
@@ -97,119 +123,121 @@ void require_name(const Section& table, const std::string& name) {
     table.fail("name", fmt::format("\"{}\": use letters, digits, - and _", name));
 }
 
-std::string read_name(const SceneBodies& bodies, const Section& table) {
+template <class S> std::string read_name(const BasicSceneBodies<S>& bodies, const Section& table) {
   const std::string name = read_key(table, name_key);
   require_name(table, name);
   for (const char* taken : {"energy", "time", "t", "constraint_residual", "residual", "step_size", "h", "cost"})
     if (name == taken) table.fail("name", fmt::format("\"{}\" is a column of every run; choose another name", name));
   if (name == "ground") table.fail("name", "\"ground\" is what joints tie bodies to; choose another name");
-  const auto taken = [&](const NamedBody& body) { return body.name == name || body.name.starts_with(name + "."); };
+  const auto taken = [&](const BasicNamedBody<S>& body) {
+    return body.name == name || body.name.starts_with(name + ".");
+  };
   if (std::any_of(bodies.bodies.begin(), bodies.bodies.end(), taken))
     table.fail("name", fmt::format("there is a body \"{}\" already; choose another name", name));
   return name;
 }
 
-void keep(SceneBodies& bodies, NamedBody body) {
+template <class S> void keep(BasicSceneBodies<S>& bodies, BasicNamedBody<S> body) {
   body.linear = bodies.scene.linear_of(body.body);
   bodies.bodies.push_back(std::move(body));
 }
 
-void read_point(SceneBodies& bodies, const Section& table) {
-  NamedBody b;
+template <class S> void read_point(BasicSceneBodies<S>& bodies, const Section& table) {
+  BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
-  b.mass = read_key(table, mass);
-  b.place = vector_at(table, position);
-  b.body = bodies.scene.point_mass(b.mass, b.place, vector_at(table, velocity));
+  b.mass = bodies.number(table, mass);
+  b.place = bodies.vector(table, position);
+  b.body = bodies.scene.point_mass(b.mass, b.place, bodies.vector(table, velocity));
   b.mass_centre = b.body.centre;
   keep(bodies, b);
 }
 
-void read_rigid(SceneBodies& bodies, const Section& table) {
-  NamedBody b;
+template <class S> void read_rigid(BasicSceneBodies<S>& bodies, const Section& table) {
+  BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
-  b.mass = read_key(table, mass);
-  b.inertia = read_moments(table, moments);
-  b.place = vector_at(table, position);
+  b.mass = bodies.number(table, mass);
+  b.inertia = read_moments(bodies, table, moments);
+  b.place = bodies.vector(table, position);
   const Quaternion q = read_attitude(table);
-  b.attitude = SO3::from_quaternion(q);
-  const Vec w = vector_at(table, angular_velocity);
-  b.velocity = vector_at(table, velocity);
+  b.attitude = SO3::from_quaternion(q).template cast<S>();
+  const Vector<S, 3> w = bodies.vector(table, angular_velocity);
+  b.velocity = bodies.vector(table, velocity);
   b.angular_velocity = b.attitude * w;
-  b.body = bodies.scene.rigid_body(b.mass, b.inertia, b.place, q, b.velocity, w);
+  b.body = bodies.scene.rigid_body(b.mass, b.inertia, b.place, q.template cast<S>(), b.velocity, w);
   b.mass_centre = b.body.centre;
   keep(bodies, b);
 }
 
-void read_pivoted(SceneBodies& bodies, const Section& table) {
-  NamedBody b;
+template <class S> void read_pivoted(BasicSceneBodies<S>& bodies, const Section& table) {
+  BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
-  b.mass = read_key(table, pivoted_mass);
-  b.inertia = read_moments(table, pivoted_moments);
-  b.place = vector_at(table, pivot);
-  b.to_centre = vector_at(table, centre);
+  b.mass = bodies.number(table, pivoted_mass);
+  b.inertia = read_moments(bodies, table, pivoted_moments);
+  b.place = bodies.vector(table, pivot);
+  b.to_centre = bodies.vector(table, centre);
   for (int i = 0; i < 3; ++i) {
-    const Vec& c = b.to_centre;
-    const double least = b.mass * (c.squaredNorm() - c(i) * c(i));
-    if (b.inertia(i) < least * (1 - 1e-9))
+    const Vector<S, 3>& c = b.to_centre;
+    const double least = value_of(b.mass * (c.squaredNorm() - c(i) * c(i)));
+    if (value_of(b.inertia(i)) < least * (1 - 1e-9))
       table.fail("inertia",
                  fmt::format("about the pivot, it is at least the mass times the square of the distance of the "
                              "centre from the axis: moment {} is {:.6g}, and must be {:.6g} or more",
-                             i + 1, b.inertia(i), least));
+                             i + 1, value_of(b.inertia(i)), least));
   }
   const Quaternion q = read_attitude(table);
-  b.attitude = SO3::from_quaternion(q);
-  const Vec w = vector_at(table, angular_velocity);
+  b.attitude = SO3::from_quaternion(q).template cast<S>();
+  const Vector<S, 3> w = bodies.vector(table, angular_velocity);
   b.angular_velocity = b.attitude * w;
-  b.body = bodies.scene.pivoted_body(b.inertia, b.place, q, w);
+  b.body = bodies.scene.pivoted_body(b.inertia, b.place, q.template cast<S>(), w);
   b.mass_centre = bodies.scene.point_of(b.body, b.to_centre);
   bodies.isolated = false;
   keep(bodies, b);
 }
 
-void read_planar(SceneBodies& bodies, const Section& table) {
-  NamedBody b;
+template <class S> void read_planar(BasicSceneBodies<S>& bodies, const Section& table) {
+  BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
   b.planar = true;
-  b.mass = read_key(table, mass);
-  const double inertia = read_key(table, planar_inertia);
-  b.inertia = {0, 0, inertia};
-  const auto at = read_key(table, planar_position);
-  b.angle = read_key(table, angle);
-  const auto v = read_key(table, planar_velocity);
-  b.place = {at[0], at[1], 0};
-  b.attitude = SO3::exp(Vec(0, 0, b.angle));
-  b.velocity = {v[0], v[1], 0};
-  b.angular_velocity = {0, 0, read_key(table, planar_turning)};
+  b.mass = bodies.number(table, mass);
+  const S inertia = bodies.number(table, planar_inertia);
+  b.inertia = {S(0), S(0), inertia};
+  const std::vector<S> at = bodies.numbers(table, planar_position);
+  b.angle = bodies.number(table, angle);
+  const std::vector<S> v = bodies.numbers(table, planar_velocity);
+  b.place = {at[0], at[1], S(0)};
+  b.attitude = SO3::exp(Vector<S, 3>(S(0), S(0), b.angle));
+  b.velocity = {v[0], v[1], S(0)};
+  b.angular_velocity = {S(0), S(0), bodies.number(table, planar_turning)};
   b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], b.angle}, {v[0], v[1], b.angular_velocity(2)});
   b.mass_centre = b.body.centre;
   keep(bodies, b);
 }
 
 /// Links of equal length, each a point mass on a massless rod, in a straight line at first.
-void read_chain(SceneBodies& bodies, const Section& table) {
+template <class S> void read_chain(BasicSceneBodies<S>& bodies, const Section& table) {
   const std::string name = read_name(bodies, table);
   const long count = read_key(table, links);
-  const double each_mass = read_key(table, chain_mass) / double(count);
-  const double each_length = read_key(table, chain_length) / double(count);
-  const Vec along = vector_at(table, direction);
+  const S each_mass = bodies.number(table, chain_mass) / double(count);
+  const S each_length = bodies.number(table, chain_length) / double(count);
+  const Vector<S, 3> along = bodies.vector(table, direction);
   if (!(along.norm() > 0)) table.fail(direction.name, "must not vanish");
-  const Vec turning = vector_at(table, chain_turning);
+  const Vector<S, 3> turning = bodies.vector(table, chain_turning);
   const std::string on = read_key(table, hangs_on);
-  const Vec arm = vector_at(table, hangs_at);
-  const NamedBody* holder = on == "ground" ? nullptr : &bodies.named(table, "on", on);
-  Attachment last = holder ? bodies.end_of(table, "at", holder, arm) : bodies.ground_of(table, arm);
+  const Vector<S, 3> arm = bodies.vector(table, hangs_at);
+  const BasicNamedBody<S>* holder = on == "ground" ? nullptr : &bodies.named(table, "on", on);
+  BasicAttachment<S> last = holder ? bodies.end_of(table, "at", holder, arm) : bodies.ground_of(table, arm);
   if (!holder) bodies.isolated = false;
-  const Vec origin = last.place;
+  const Vector<S, 3> origin = last.place;
   for (long k = 1; k <= count; ++k) {
-    NamedBody b;
+    BasicNamedBody<S> b;
     b.name = fmt::format("{}.{}", name, k);
     b.mass = each_mass;
-    b.place = origin + (double(k) * each_length) * along.stableNormalized();
-    b.body = bodies.scene.point_mass(each_mass, b.place, turning.cross(Vec(b.place - origin)));
+    b.place = origin + (double(k) * each_length) * unit_of(along);
+    b.body = bodies.scene.point_mass(each_mass, b.place, turning.cross(Vector<S, 3>(b.place - origin)));
     b.mass_centre = b.body.centre;
     keep(bodies, b);
-    const Attachment here = bodies.end_of(table, "name", &bodies.bodies.back(), Vec::Zero());
-    bodies.scene.add(multibody::Rod{{last.site, here.site}, each_length});
+    const BasicAttachment<S> here = bodies.end_of(table, "name", &bodies.bodies.back(), Vector<S, 3>::Zero());
+    bodies.scene.add(multibody::BasicRod<S>{{last.site, here.site}, each_length});
     bodies.lines.push_back({last, here, 0.008});
     last = here;
   }
@@ -217,7 +245,9 @@ void read_chain(SceneBodies& bodies, const Section& table) {
 
 }  // namespace
 
-const NamedBody& SceneBodies::named(const Section& table, std::string_view key, const std::string& name) const {
+template <class S>
+const BasicNamedBody<S>& BasicSceneBodies<S>::named(const Section& table, std::string_view key,
+                                                    const std::string& name) const {
   for (const auto& body : bodies)
     if (body.name == name) return body;
   std::vector<std::string> names;
@@ -228,9 +258,9 @@ const NamedBody& SceneBodies::named(const Section& table, std::string_view key, 
                               bodies.size() > names.size() ? ", ..." : ""));
 }
 
-std::vector<const NamedBody*> SceneBodies::chosen(const Section& table) const {
+template <class S> std::vector<const BasicNamedBody<S>*> BasicSceneBodies<S>::chosen(const Section& table) const {
   const std::string& key = chosen_bodies.name;
-  std::vector<const NamedBody*> out;
+  std::vector<const BasicNamedBody<S>*> out;
   if (!table.has(key)) {
     for (const auto& body : bodies) out.push_back(&body);
     return out;
@@ -249,25 +279,27 @@ std::vector<const NamedBody*> SceneBodies::chosen(const Section& table) const {
   return out;
 }
 
-Attachment SceneBodies::end_of(const Section& table, std::string_view key, const NamedBody* body, const Vec& arm) {
-  if (body && body->body.attitude.index < 0 && !body->planar && !arm.isZero(0))
+template <class S>
+BasicAttachment<S> BasicSceneBodies<S>::end_of(const Section& table, std::string_view key,
+                                               const BasicNamedBody<S>* body, const Vector<S, 3>& arm) {
+  if (body && body->body.attitude.index < 0 && !body->planar && !multibody::stays_zero(arm))
     table.fail(key, fmt::format("\"{}\" is a point mass and has no other points: give [0, 0, 0]", body->name));
-  if (body && body->planar && arm(2) != 0)
+  if (body && body->planar && arm(2) != S(0))
     table.fail(key, fmt::format("\"{}\" moves in the plane: give it a third coordinate of 0", body->name));
-  Attachment end;
+  BasicAttachment<S> end;
   end.body = body;
   end.arm = arm;
-  end.place = body ? Vec(body->place + body->attitude * arm) : arm;
+  end.place = body ? Vector<S, 3>(body->place + body->attitude * arm) : arm;
   end.site = body ? scene.point_of(body->body, arm) : scene.ground(arm);
   return end;
 }
 
-Attachment SceneBodies::ground_of(const Section& table, const Vec& place) {
-  Attachment end = end_of(table, "", nullptr, place);
+template <class S> BasicAttachment<S> BasicSceneBodies<S>::ground_of(const Section& table, const Vector<S, 3>& place) {
+  BasicAttachment<S> end = end_of(table, "", nullptr, place);
   if (!table.has(ground_amplitude.name) && !table.has(ground_rate.name)) return end;
-  const Vec amplitude = vector_at(table, ground_amplitude);
-  const double rate = read_key(table, ground_rate);
-  if (amplitude.isZero(0) || rate == 0)
+  const Vector<S, 3> amplitude = vector(table, ground_amplitude);
+  const S rate = number(table, ground_rate);
+  if (amplitude.isZero(0) || rate == S(0))
     table.fail("ground_amplitude", "a ground that moves has an amplitude and a rate; leave both out for one at rest");
   end.site = scene.moving_ground(place, amplitude, rate);
   end.moved = true;
@@ -275,7 +307,7 @@ Attachment SceneBodies::ground_of(const Section& table, const Vec& place) {
   return end;
 }
 
-std::array<Attachment, 2> SceneBodies::ends(const Section& table, bool with_points) {
+template <class S> std::array<BasicAttachment<S>, 2> BasicSceneBodies<S>::ends(const Section& table, bool with_points) {
   const auto names = read_key(table, between);
   if (names.size() != 2)
     table.fail(table.has("between") ? "between" : "",
@@ -283,9 +315,9 @@ std::array<Attachment, 2> SceneBodies::ends(const Section& table, bool with_poin
   if (names[0] == names[1]) table.fail("between", fmt::format("\"{}\" is tied to itself", names[0]));
   std::vector<std::vector<double>> arms(2, {0, 0, 0});
   if (with_points && table.has(points.name)) arms = table.points(points.name, *points.value.count, 3, points.meaning);
-  std::array<Attachment, 2> out;
+  std::array<BasicAttachment<S>, 2> out;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Vec arm(arms[i][0], arms[i][1], arms[i][2]);
+    const Vector<S, 3> arm = varied_vector(fmt::format("{}.{}", points.name, i), arms[i]);
     if (names[i] != "ground") {
       out[i] = end_of(table, "points", &named(table, "between", names[i]), arm);
     } else {
@@ -293,7 +325,7 @@ std::array<Attachment, 2> SceneBodies::ends(const Section& table, bool with_poin
       isolated = false;
       const std::string& other = names[1 - i];
       if (out[i].moved && other != "ground" && named(table, "between", other).planar &&
-          vector_at(table, ground_amplitude)(2) != 0)
+          vector(table, ground_amplitude)(2) != S(0))
         table.fail("ground_amplitude", fmt::format("\"{}\" moves in the plane: give a third part of 0", other));
     }
   }
@@ -308,7 +340,7 @@ namespace {
 const KeyOf<Text> switch_name{"name", {}, "", "by which events switch it", {}, "it is never switched"};
 const KeyOf<Flag> switch_on{"on", {}, "", "false: it does not act until an event switches it on", true};
 
-void begin_switch(SceneBodies& bodies, const Section& table) {
+template <class S> void begin_switch(BasicSceneBodies<S>& bodies, const Section& table) {
   const bool on = read_key(table, switch_on);
   if (!table.has(switch_name.name)) {
     if (!on) table.fail(switch_on.name, "what does not act at the start needs a name by which an event switches it on");
@@ -331,13 +363,18 @@ KeyOf<OneOf> kind_key(const std::vector<SceneKind>& kinds) {
 
 }  // namespace
 
-void read_kind(const std::vector<SceneKind>& kinds, SceneBodies& bodies, const Section& table) {
+template <class S>
+void read_kind(const std::vector<SceneKind>& kinds, BasicSceneBodies<S>& bodies, const Section& table) {
   const std::string name = read_key(table, kind_key(kinds));
   for (const SceneKind& kind : kinds) {
     if (kind.name != name) continue;
     if (kind.has_switch) begin_switch(bodies, table);
     const std::size_t before = bodies.lines.size();
-    kind.read(bodies, table);
+    if constexpr (std::is_same_v<S, double>) {
+      kind.read(bodies, table);
+    } else {
+      kind.read_varied(bodies, table);
+    }
     if (kind.has_switch && table.has(switch_name.name))
       for (std::size_t k = before; k < bodies.lines.size(); ++k)
         bodies.lines[k].switched_by = int(bodies.scene.switches().names.size()) - 1;
@@ -358,24 +395,28 @@ Table table_of(const std::vector<SceneKind>& kinds) {
 
 const std::vector<SceneKind>& body_kinds() {
   static const std::vector<SceneKind> all{
-      {"point", "a point mass", read_point, {name_key, mass, position, velocity}, false},
+      {"point", "a point mass", read_point, read_point, {name_key, mass, position, velocity}, false},
       {"rigid",
        "moves and turns in space",
+       read_rigid,
        read_rigid,
        {name_key, mass, moments, position, attitude, velocity, angular_velocity},
        false},
       {"pivoted",
        "turns about a fixed point",
        read_pivoted,
+       read_pivoted,
        {name_key, pivoted_moments, pivot, pivoted_mass, centre, attitude, angular_velocity},
        false},
       {"planar",
        "moves in the plane of x and y",
        read_planar,
+       read_planar,
        {name_key, mass, planar_inertia, planar_position, angle, planar_velocity, planar_turning},
        false},
       {"chain",
        "point masses on massless rods, NAME.1, NAME.2, ...",
+       read_chain,
        read_chain,
        {name_key, links, chain_mass, chain_length, direction, chain_turning, hangs_on, hangs_at, ground_amplitude,
         ground_rate},
@@ -390,16 +431,23 @@ Table bodies_table() {
        KeyOf<Tables>{"effect", {table_of(effect_kinds())}, "", "what acts on bodies", {}, "none"}}};
 }
 
-SceneBodies read_scene_bodies(const Section& scene, bool on_its_way) {
-  SceneBodies out;
-  out.is_on_its_way = on_its_way;
+namespace {
+
+template <class S> void read_all(const Section& scene, BasicSceneBodies<S>& out) {
   out.scene.rotation = read_key(scene, rotation) == *rotation.fallback ? Retraction::exponential : Retraction::cayley;
   out.projects = read_key(scene, project_velocities);
-  for (const auto& table : scene.tables("body")) read_kind(body_kinds(), out, table);
-  for (const auto& table : scene.tables("joint")) read_kind(joint_kinds(), out, table);
-  for (const auto& table : scene.tables("effect")) read_kind(effect_kinds(), out, table);
+  const auto read_tables = [&](const std::string& name, const std::vector<SceneKind>& kinds) {
+    int number = 0;
+    for (const Section& table : scene.tables(name)) {
+      out.reads = fmt::format("{}.{}", name, number++);
+      read_kind(kinds, out, table);
+    }
+  };
+  read_tables("body", body_kinds());
+  read_tables("joint", joint_kinds());
+  read_tables("effect", effect_kinds());
   // The plane of planar bodies holds what is tied to bodies in space.
-  const auto planar = [](const NamedBody& body) { return body.planar; };
+  const auto planar = [](const BasicNamedBody<S>& body) { return body.planar; };
   if (std::any_of(out.bodies.begin(), out.bodies.end(), planar) &&
       !std::all_of(out.bodies.begin(), out.bodies.end(), planar))
     out.isolated = false;
@@ -409,13 +457,34 @@ SceneBodies read_scene_bodies(const Section& scene, bool on_its_way) {
     least = least.cwiseMin(x);
     most = most.cwiseMax(x);
   };
-  for (const auto& body : out.bodies) cover(body.place);
+  for (const auto& body : out.bodies) cover(multibody::values_of(body.place));
   for (const auto& line : out.lines) {
-    cover(line.from.place);
-    cover(line.to.place);
+    cover(multibody::values_of(line.from.place));
+    cover(multibody::values_of(line.to.place));
   }
   out.extent = (most - least).norm();
+}
+
+}  // namespace
+
+SceneBodies read_scene_bodies(const Section& scene, bool on_its_way) {
+  SceneBodies out;
+  out.is_on_its_way = on_its_way;
+  read_all(scene, out);
   return out;
 }
+
+BasicSceneBodies<VariedNumber> read_varied_scene(const Section& scene, const std::vector<VariedAt>& varied) {
+  BasicSceneBodies<VariedNumber> out;
+  out.varied = varied;
+  read_all(scene, out);
+  for (const VariedAt& each : out.varied)
+    if (!each.is_read) throw std::invalid_argument(fmt::format("there is no derivative by {}", each.path));
+  return out;
+}
+
+template struct BasicSceneBodies<double>;
+template struct BasicSceneBodies<VariedNumber>;
+template void read_kind(const std::vector<SceneKind>&, SceneBodies&, const Section&);
 
 }  // namespace lagroid::app

@@ -15,6 +15,8 @@
 
 namespace lagroid::app {
 
+using multibody::stays_zero;
+using multibody::values_of;
 using multibody::Vec;
 
 namespace {
@@ -50,239 +52,251 @@ const KeyOf<NumberArray> frame_rate = vector_key("rate", "rad/s", "angular veloc
 const KeyOf<Flag> centrifugal_key{"centrifugal", {}, "", "false: a weight holds that force", true};
 
 /// How a force or a torque follows time: constant, or as cos(rate t + phase).
-struct Drive {
+template <class S> struct Drive {
   bool periodic = false;
-  double rate = 0;
-  double phase = 0;
+  S rate = 0;
+  S phase = 0;
 };
 
-Drive read_drive(const Section& table) {
-  const double rate = read_key(table, drive_rate);
-  return {rate != 0 || table.has(phase.name), rate, read_key(table, phase)};
+template <class S> Drive<S> read_drive(const BasicSceneBodies<S>& bodies, const Section& table) {
+  const S rate = bodies.number(table, drive_rate);
+  return {!stays_zero(rate) || table.has(phase.name), rate, bodies.number(table, phase)};
 }
 
-void read_gravity(SceneBodies& bodies, const Section& table) {
-  const Vec g = vector_at(table, acceleration);
+template <class S> void read_gravity(BasicSceneBodies<S>& bodies, const Section& table) {
+  const Vector<S, 3> g = bodies.vector(table, acceleration);
   const auto heavy = bodies.chosen(table);
-  const auto planar = [](const NamedBody* body) { return body->planar; };
-  const bool across = g(0) == 0 && g(1) == 0;
+  const auto planar = [](const BasicNamedBody<S>* body) { return body->planar; };
+  const bool across = g(0) == S(0) && g(1) == S(0);
   if (across && (table.has("bodies") ? std::any_of(heavy.begin(), heavy.end(), planar)
                                      : std::all_of(heavy.begin(), heavy.end(), planar)))
     table.fail(table.has("acceleration") ? "acceleration" : "",
                "planar bodies move in the plane of x and y, across which this gravity acts: give acceleration = "
                "[0, -9.81, 0]");
-  for (const NamedBody* body : heavy)
-    if (body->mass > 0) bodies.scene.add(multibody::ConstantForce{{body->mass_centre}, body->mass * g});
+  for (const BasicNamedBody<S>* body : heavy)
+    if (!stays_zero(body->mass))
+      bodies.scene.add(multibody::BasicConstantForce<S>{{body->mass_centre}, body->mass * g});
   bodies.isolated = false;
 }
 
-void read_central(SceneBodies& bodies, const Section& table) {
-  const Vec origin = vector_at(table, centre);
-  const double s = read_key(table, strength);
-  for (const NamedBody* body : bodies.chosen(table)) {
-    if (body->mass == 0) continue;
-    if ((body->place + body->attitude * body->to_centre - origin).isZero(0))
+template <class S> void read_central(BasicSceneBodies<S>& bodies, const Section& table) {
+  const Vector<S, 3> origin = bodies.vector(table, centre);
+  const S s = bodies.number(table, strength);
+  for (const BasicNamedBody<S>* body : bodies.chosen(table)) {
+    if (stays_zero(body->mass)) continue;
+    if (values_of(Vector<S, 3>(body->place + body->attitude * body->to_centre - origin)).isZero(0))
       table.fail("centre", fmt::format("is where \"{}\" is at the start", body->name));
-    bodies.scene.add(multibody::CentralGravity{{body->mass_centre}, origin, s * body->mass});
+    bodies.scene.add(multibody::BasicCentralGravity<S>{{body->mass_centre}, origin, s * body->mass});
   }
   bodies.isolated = false;
 }
 
-void read_mutual(SceneBodies& bodies, const Section& table) {
-  auto gravity = std::make_unique<multibody::MutualGravity>(read_key(table, gravitation), read_key(table, softening));
-  for (const NamedBody* body : bodies.chosen(table))
-    if (body->mass > 0) gravity->add(body->mass_centre, body->mass);
+template <class S> void read_mutual(BasicSceneBodies<S>& bodies, const Section& table) {
+  auto gravity = std::make_unique<multibody::BasicMutualGravity<S>>(bodies.number(table, gravitation),
+                                                                    bodies.number(table, softening));
+  for (const BasicNamedBody<S>* body : bodies.chosen(table))
+    if (!stays_zero(body->mass)) gravity->add(body->mass_centre, body->mass);
   bodies.scene.add_effects(std::move(gravity));
 }
 
-void read_charges(SceneBodies& bodies, const Section& table) {
+template <class S> void read_charges(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto charged = bodies.chosen(table);
-  const auto q = read_key(table, charges(charged.size()));
-  const double constant = read_key(table, coulomb);
-  const double e = read_key(table, softening);
+  const std::vector<S> q = bodies.numbers(table, charges(charged.size()));
+  const S constant = bodies.number(table, coulomb);
+  const S e = bodies.number(table, softening);
   for (std::size_t i = 0; i < charged.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (q[i] * q[j] != 0)
-        bodies.scene.add(
-            multibody::InverseSquare{{charged[j]->mass_centre, charged[i]->mass_centre}, -constant * q[i] * q[j], e});
+      if (!stays_zero(q[i] * q[j]))
+        bodies.scene.add(multibody::BasicInverseSquare<S>{
+            {charged[j]->mass_centre, charged[i]->mass_centre}, -constant * q[i] * q[j], e});
 }
 
-void read_spring(SceneBodies& bodies, const Section& table) {
+template <class S> void read_spring(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = bodies.ends(table);
-  const double apart = (ends[1].place - ends[0].place).norm();
-  const double length = read_key_or(table, rest_length, apart);
-  if (apart == 0 && length > 0)
+  const Vector<S, 3> between_ends = ends[1].place - ends[0].place;
+  // Of ends that meet, the distance has no derivative.
+  const S apart = between_ends == Vector<S, 3>::Zero() ? S(0) : between_ends.norm();
+  const S length = bodies.number_or(table, rest_length, apart);
+  if (apart == S(0) && length > S(0))
     table.fail("points", "the ends of the spring meet at the start: its force has no direction");
-  bodies.scene.add(multibody::Spring{{ends[0].site, ends[1].site}, read_key(table, stiffness), length});
+  bodies.scene.add(multibody::BasicSpring<S>{{ends[0].site, ends[1].site}, bodies.number(table, stiffness), length});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
 }
 
 /// Whether what acts on these ends acts in the plane.
-bool turn_in_plane(const std::array<Attachment, 2>& ends) {
-  return std::any_of(ends.begin(), ends.end(), [](const Attachment& end) { return end.body && end.body->planar; });
+template <class S> bool turn_in_plane(const std::array<BasicAttachment<S>, 2>& ends) {
+  return std::any_of(ends.begin(), ends.end(),
+                     [](const BasicAttachment<S>& end) { return end.body && end.body->planar; });
 }
 
-void require_across_plane(const Section& table, const std::string& name, const Vec& torque) {
-  if (torque(0) != 0 || torque(1) != 0)
+template <class S>
+void require_across_plane(const Section& table, const std::string& name, const Vector<S, 3>& torque) {
+  if (torque(0) != S(0) || torque(1) != S(0))
     table.fail("torque", fmt::format("\"{}\" turns in the plane of x and y: give first parts of 0", name));
 }
 
 /// The ends of what acts on two bodies that turn: both in space, or both in the plane; either may be the ground.
-std::array<Attachment, 2> turning_ends(SceneBodies& bodies, const Section& table, std::string_view effect) {
+template <class S>
+std::array<BasicAttachment<S>, 2> turning_ends(BasicSceneBodies<S>& bodies, const Section& table,
+                                               std::string_view effect) {
   const auto ends = bodies.ends(table, /*with_points=*/false);
-  for (const Attachment& end : ends)
+  for (const BasicAttachment<S>& end : ends)
     if (!end.turns_in_space() && !end.body->planar)
       table.fail("between", fmt::format("\"{}\" does not turn: {} acts on bodies that do", end.name(), effect));
-  const auto in_space = [](const Attachment& end) { return end.body && !end.body->planar; };
+  const auto in_space = [](const BasicAttachment<S>& end) { return end.body && !end.body->planar; };
   if (turn_in_plane(ends) && std::any_of(ends.begin(), ends.end(), in_space))
     table.fail("between", fmt::format("{} acts on two bodies that turn in space, or on two in the plane", effect));
   return ends;
 }
 
 /// (x, y, angle) of what turns in the plane; the ground's angle is zero.
-multibody::Site planar_place(SceneBodies& bodies, const Attachment& end) {
-  return end.body ? bodies.scene.planar_place(end.body->body) : bodies.scene.ground(Vec::Zero());
+template <class S> multibody::Site planar_place(BasicSceneBodies<S>& bodies, const BasicAttachment<S>& end) {
+  return end.body ? bodies.scene.planar_place(end.body->body) : bodies.scene.ground(Vector<S, 3>::Zero());
 }
 
 /// A torque on a planar body is the third part of a force on its place, and derived from a potential where it is
 /// constant.
-void turn(SceneBodies& bodies, const Attachment& end, double torque, const Drive& drive) {
-  const Vec force(0, 0, torque);
+template <class S>
+void turn(BasicSceneBodies<S>& bodies, const BasicAttachment<S>& end, const S& torque, const Drive<S>& drive) {
+  const Vector<S, 3> force(S(0), S(0), torque);
   if (drive.periodic) {
-    bodies.scene.add(multibody::PeriodicForce{{planar_place(bodies, end)}, force, drive.rate, drive.phase});
+    bodies.scene.add(multibody::BasicPeriodicForce<S>{{planar_place(bodies, end)}, force, drive.rate, drive.phase});
     bodies.timed = true;
   } else {
-    bodies.scene.add(multibody::ConstantForce{{planar_place(bodies, end)}, force});
+    bodies.scene.add(multibody::BasicConstantForce<S>{{planar_place(bodies, end)}, force});
   }
 }
 
-void read_torsion(SceneBodies& bodies, const Section& table) {
+template <class S> void read_torsion(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a torsion spring");
   if (turn_in_plane(ends)) {
-    const auto angle = [](const Attachment& end) { return end.body ? end.body->angle : 0.0; };
-    bodies.scene.add(multibody::PlanarTorsionSpring{{planar_place(bodies, ends[0]), planar_place(bodies, ends[1])},
-                                                    read_key(table, torsion_stiffness),
-                                                    angle(ends[1]) - angle(ends[0])});
+    const auto angle = [](const BasicAttachment<S>& end) { return end.body ? end.body->angle : S(0); };
+    bodies.scene.add(
+        multibody::BasicPlanarTorsionSpring<S>{{planar_place(bodies, ends[0]), planar_place(bodies, ends[1])},
+                                               bodies.number(table, torsion_stiffness),
+                                               angle(ends[1]) - angle(ends[0])});
     return;
   }
-  const Vec axis = vector_at(table, torsion_direction);
-  if (!(axis.norm() > 0)) table.fail("direction", "must not vanish");
-  const Vec unit = axis.stableNormalized();
-  bodies.scene.add(multibody::TorsionSpring{{},
-                                            {ends[0].attitude(), ends[1].attitude()},
-                                            ends[0].seen(unit),
-                                            ends[1].seen(unit),
-                                            read_key(table, torsion_stiffness)});
+  const Vector<S, 3> axis = bodies.vector(table, torsion_direction);
+  if (!(values_of(axis).norm() > 0)) table.fail("direction", "must not vanish");
+  const Vector<S, 3> unit = unit_of(axis);
+  bodies.scene.add(multibody::BasicTorsionSpring<S>{{},
+                                                    {ends[0].attitude(), ends[1].attitude()},
+                                                    ends[0].seen(unit),
+                                                    ends[1].seen(unit),
+                                                    bodies.number(table, torsion_stiffness)});
 }
 
-void read_drag(SceneBodies& bodies, const Section& table) {
-  const double motion = read_key(table, motion_drag);
-  const double turning = read_key(table, turning_drag);
-  if (motion == 0 && turning == 0)
+template <class S> void read_drag(BasicSceneBodies<S>& bodies, const Section& table) {
+  const S motion = bodies.number(table, motion_drag);
+  const S turning = bodies.number(table, turning_drag);
+  if (stays_zero(motion) && stays_zero(turning))
     table.fail("", "give motion (force over velocity, kg/s) or turning (torque over angular velocity, N m s)");
   const auto damped = bodies.chosen(table);
-  const auto turns = [](const NamedBody* body) { return body->planar || body->body.attitude.index >= 0; };
-  const auto moves = [](const NamedBody* body) { return body->linear >= 0; };
-  if (turning > 0 && std::none_of(damped.begin(), damped.end(), turns))
+  const auto turns = [](const BasicNamedBody<S>* body) { return body->planar || body->body.attitude.index >= 0; };
+  const auto moves = [](const BasicNamedBody<S>* body) { return body->linear >= 0; };
+  if (turning > S(0) && std::none_of(damped.begin(), damped.end(), turns))
     table.fail("turning", "none of the bodies turns");
-  if (motion > 0 && std::none_of(damped.begin(), damped.end(), moves))
+  if (motion > S(0) && std::none_of(damped.begin(), damped.end(), moves))
     table.fail("motion", "none of the bodies has a centre that moves");
-  for (const NamedBody* body : damped) {
+  for (const BasicNamedBody<S>* body : damped) {
     bodies.scene.damp(body->body, motion, turning);
-    const double inertia = body->planar ? body->inertia(2) : body->inertia.minCoeff();
-    if (turns(body)) bodies.damping_rate = std::max(bodies.damping_rate, turning / inertia);
-    if (moves(body)) bodies.damping_rate = std::max(bodies.damping_rate, motion / body->mass);
+    const double inertia = body->planar ? value_of(body->inertia(2)) : values_of(body->inertia).minCoeff();
+    if (turns(body)) bodies.damping_rate = std::max(bodies.damping_rate, value_of(turning) / inertia);
+    if (moves(body)) bodies.damping_rate = std::max(bodies.damping_rate, value_of(motion) / value_of(body->mass));
   }
   bodies.dissipates = true;
   bodies.isolated = false;
 }
 
-void read_damper(SceneBodies& bodies, const Section& table) {
+template <class S> void read_damper(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = bodies.ends(table);
-  if ((ends[1].place - ends[0].place).norm() == 0)
+  if ((ends[1].place - ends[0].place).norm() == S(0))
     table.fail("points", "the ends of the damper meet at the start: its force has no direction");
-  bodies.scene.add(multibody::Damper<multibody::Length>{{{ends[0].site, ends[1].site}}, read_key(table, damping)});
+  bodies.scene.add(
+      multibody::Damper<multibody::BasicLength<S>, S>{{{ends[0].site, ends[1].site}}, bodies.number(table, damping)});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
   bodies.dissipates = true;
 }
 
-void read_cost(SceneBodies& bodies, const Section&) { bodies.counts_cost = true; }
+template <class S> void read_cost(BasicSceneBodies<S>& bodies, const Section&) { bodies.counts_cost = true; }
 
-const NamedBody& require_point(const Section& table, const NamedBody* body, std::string_view effect) {
+template <class S>
+const BasicNamedBody<S>& require_point(const Section& table, const BasicNamedBody<S>* body, std::string_view effect) {
   if (body->linear < 0 || body->body.attitude.index >= 0 || body->planar)
     table.fail("bodies", fmt::format("\"{}\" is no point mass: {} acts on point masses alone; name them in bodies",
                                      body->name, effect));
   return *body;
 }
 
-void read_rotating_frame(SceneBodies& bodies, const Section& table) {
-  const Vec rate = vector_at(table, frame_rate);
+template <class S> void read_rotating_frame(BasicSceneBodies<S>& bodies, const Section& table) {
+  const Vector<S, 3> rate = bodies.vector(table, frame_rate);
   const bool centrifugal = read_key(table, centrifugal_key);
-  for (const NamedBody* chosen : bodies.chosen(table)) {
-    const NamedBody& body = require_point(table, chosen, "a rotating frame");
-    bodies.scene.gyroscopic_force(body.body, 2 * body.mass * rate);
-    if (centrifugal) bodies.scene.add(multibody::Centrifugal{{body.body.centre}, body.mass, rate});
+  for (const BasicNamedBody<S>* chosen : bodies.chosen(table)) {
+    const BasicNamedBody<S>& body = require_point(table, chosen, "a rotating frame");
+    bodies.scene.gyroscopic_force(body.body, 2.0 * body.mass * rate);
+    if (centrifugal) bodies.scene.add(multibody::BasicCentrifugal<S>{{body.body.centre}, body.mass, rate});
   }
   bodies.gyroscopic = true;
   bodies.isolated = false;
 }
 
-void read_magnetic(SceneBodies& bodies, const Section& table) {
-  const Vec field = vector_at(table, field_key);
+template <class S> void read_magnetic(BasicSceneBodies<S>& bodies, const Section& table) {
+  const Vector<S, 3> field = bodies.vector(table, field_key);
   const auto charged = bodies.chosen(table);
-  const auto q = read_key(table, charges(charged.size()));
+  const std::vector<S> q = bodies.numbers(table, charges(charged.size()));
   for (std::size_t i = 0; i < charged.size(); ++i)
     bodies.scene.gyroscopic_force(require_point(table, charged[i], "a magnetic field").body, q[i] * field);
   bodies.gyroscopic = true;
   bodies.isolated = false;
 }
 
-void read_force(SceneBodies& bodies, const Section& table) {
-  const NamedBody& body = bodies.named(table, body_key.name, read_key(table, body_key));
-  const Vec arm = vector_at(table, acts_at);
-  const Vec force = vector_at(table, force_key);
-  const Drive drive = read_drive(table);
-  if (body.planar && force(2) != 0)
+template <class S> void read_force(BasicSceneBodies<S>& bodies, const Section& table) {
+  const BasicNamedBody<S>& body = bodies.named(table, body_key.name, read_key(table, body_key));
+  const Vector<S, 3> arm = bodies.vector(table, acts_at);
+  const Vector<S, 3> force = bodies.vector(table, force_key);
+  const Drive<S> drive = read_drive(bodies, table);
+  if (body.planar && force(2) != S(0))
     table.fail("force", fmt::format("\"{}\" moves in the plane: give a third part of 0", body.name));
-  const Attachment end = bodies.end_of(table, "at", &body, arm);
+  const BasicAttachment<S> end = bodies.end_of(table, "at", &body, arm);
   if (drive.periodic) {
-    bodies.scene.add(multibody::PeriodicForce{{end.site}, force, drive.rate, drive.phase});
+    bodies.scene.add(multibody::BasicPeriodicForce<S>{{end.site}, force, drive.rate, drive.phase});
     bodies.timed = true;
   } else {
-    bodies.scene.add(multibody::ConstantForce{{end.site}, force});
+    bodies.scene.add(multibody::BasicConstantForce<S>{{end.site}, force});
   }
   bodies.isolated = false;
 }
 
-void read_torque(SceneBodies& bodies, const Section& table) {
-  const NamedBody& body = bodies.named(table, body_key.name, read_key(table, body_key));
+template <class S> void read_torque(BasicSceneBodies<S>& bodies, const Section& table) {
+  const BasicNamedBody<S>& body = bodies.named(table, body_key.name, read_key(table, body_key));
   if (!body.planar && body.body.attitude.index < 0)
     table.fail("body", fmt::format("\"{}\" does not turn: a torque acts on bodies that do", body.name));
-  const Vec torque = vector_at(table, torque_key);
+  const Vector<S, 3> torque = bodies.vector(table, torque_key);
   bodies.isolated = false;
   if (body.planar) {
     require_across_plane(table, body.name, torque);
-    Attachment end;
+    BasicAttachment<S> end;
     end.body = &body;
     turn(bodies, end, torque(2), {});
     return;
   }
-  bodies.scene.add(multibody::BodyTorque{{}, {body.body.attitude}, torque});
+  bodies.scene.add(multibody::BasicBodyTorque<S>{{}, {body.body.attitude}, torque});
   bodies.driven = true;
 }
 
-void read_motor(SceneBodies& bodies, const Section& table) {
+template <class S> void read_motor(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a motor");
-  const Vec torque = vector_at(table, motor_torque);
-  const Drive drive = read_drive(table);
+  const Vector<S, 3> torque = bodies.vector(table, motor_torque);
+  const Drive<S> drive = read_drive(bodies, table);
   if (turn_in_plane(ends)) {
     require_across_plane(table, ends[ends[0].body ? 0 : 1].name(), torque);
-    turn(bodies, ends[0], -torque(2), drive);
+    turn(bodies, ends[0], S(-torque(2)), drive);
     turn(bodies, ends[1], torque(2), drive);
     return;
   }
-  bodies.scene.add(
-      multibody::Motor{{}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(torque), drive.rate, drive.phase});
+  bodies.scene.add(multibody::BasicMotor<S>{
+      {}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(torque), drive.rate, drive.phase});
   bodies.driven = true;
 }
 
@@ -298,29 +312,44 @@ const std::vector<SceneKind>& effect_kinds() {
     return keys;
   };
   static const std::vector<SceneKind> all{
-      {"gravity", "a uniform one", read_gravity, {acceleration, chosen_bodies}},
-      {"central_gravity", "of a centre that rests", read_central, {strength, centre, chosen_bodies}},
-      {"mutual_gravity", "of the bodies on each other", read_mutual, {gravitation, softening, chosen_bodies}},
-      {"spring", "between two points", read_spring, tie(stiffness, {rest_length})},
-      {"torsion_spring", "between two bodies that turn", read_torsion, {between, torsion_direction, torsion_stiffness}},
-      {"drag", "of a medium that rests", read_drag, {motion_drag, turning_drag, chosen_bodies}, false},
-      {"damper", "between two points that do not meet", read_damper, tie(damping)},
+      {"gravity", "a uniform one", read_gravity, read_gravity, {acceleration, chosen_bodies}},
+      {"central_gravity", "of a centre that rests", read_central, read_central, {strength, centre, chosen_bodies}},
+      {"mutual_gravity",
+       "of the bodies on each other",
+       read_mutual,
+       read_mutual,
+       {gravitation, softening, chosen_bodies}},
+      {"spring", "between two points", read_spring, read_spring, tie(stiffness, {rest_length})},
+      {"torsion_spring",
+       "between two bodies that turn",
+       read_torsion,
+       read_torsion,
+       {between, torsion_direction, torsion_stiffness}},
+      {"drag", "of a medium that rests", read_drag, read_drag, {motion_drag, turning_drag, chosen_bodies}, false},
+      {"damper", "between two points that do not meet", read_damper, read_damper, tie(damping)},
       {"control_cost",
        "counts the kinetic terms, summed over the steps: a column, and a line of the report",
        read_cost,
+       read_cost,
        {},
        false},
-      {"force", "on a point of a body", read_force, {body_key, acts_at, force_key, drive_rate, phase}},
-      {"torque", "on a body", read_torque, {body_key, torque_key}},
-      {"motor", "between two bodies that turn", read_motor, {between, motor_torque, drive_rate, phase}},
-      {"charges", "of the bodies on each other", read_charges, {any_charges, coulomb, softening, chosen_bodies}},
+      {"force", "on a point of a body", read_force, read_force, {body_key, acts_at, force_key, drive_rate, phase}},
+      {"torque", "on a body", read_torque, read_torque, {body_key, torque_key}},
+      {"motor", "between two bodies that turn", read_motor, read_motor, {between, motor_torque, drive_rate, phase}},
+      {"charges",
+       "of the bodies on each other",
+       read_charges,
+       read_charges,
+       {any_charges, coulomb, softening, chosen_bodies}},
       {"magnetic_field",
        "a uniform one; point masses alone",
+       read_magnetic,
        read_magnetic,
        {field_key, any_charges, chosen_bodies},
        false},
       {"rotating_frame",
        "in which the bodies are seen; point masses alone",
+       read_rotating_frame,
        read_rotating_frame,
        {frame_rate, centrifugal_key, chosen_bodies},
        false}};

@@ -20,6 +20,10 @@ struct SceneNumber {
 /// by its place, weight.acceleration.2.
 std::vector<SceneNumber> numbers_of_scene(const Section& scene);
 
+/// All that derivatives are taken by: those, lengths of chains, centres of bodies, points of joints and effects, and
+/// those of tables without a name, by where they stand, effect.0.motion.
+std::vector<SceneNumber> numbers_to_differentiate(const Section& scene);
+
 /// The scene with these in their places.
 Section scene_with(const Section& scene, const std::vector<SceneNumber>& numbers);
 

@@ -383,6 +383,11 @@ Table scene_of_bodies_table() {
   return table;
 }
 
+multibody::Multibody begin_bodies(const Section& scene, double step, const multibody::Options& options) {
+  SceneBodies bodies = read_scene_bodies(scene);
+  return std::move(*begin(scene, bodies, step, options));
+}
+
 BodiesScene read_bodies(const Section& scene, const RunContext& context) {
   SceneBodies bodies = read_scene_bodies(scene);
   if (bodies.bodies.empty()) scene.fail("body", "there is no body in it");
@@ -397,6 +402,7 @@ BodiesScene read_bodies(const Section& scene, const RunContext& context) {
     if (output.has("bodies")) chosen.insert(body->name);
   scene.finish();
   out.methods = composed_methods(integration_method(IntegratorOptions{}).name, steps_composed(is_composable(bodies)));
+  out.options = options;
   out.to_check = {name, [scene] { return std::move(read_scene_bodies(scene).scene); }, step, is_symplectic(bodies),
                   is_reversible(bodies)};
   auto motion = std::make_unique<BodiesMotion>(scene, name, std::move(bodies), step, options, std::move(chosen));

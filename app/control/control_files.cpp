@@ -22,14 +22,18 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 6> files{"trajectory.csv", "summary.json", "summary.txt",
                                            "plot.gp",        "plot.svg",     "plot.png"};
 
-/// A row for each node; controls and costates are those of the arrow that begins there, and none at the last.
+/// A row for each node; controls, costates and phase are those of the arrow that begins there, and none at the last.
 std::string trajectory_csv(const ControlResult& found) {
   std::string out = "time";
   for (const auto& name : found.states) out += "," + name;
   for (const auto& name : found.controls) out += "," + name;
   const std::size_t costates = found.costate_rows.empty() ? 0 : found.costate_rows.front().size();
   for (std::size_t i = 0; i < costates; ++i) out += fmt::format(",costate_{}", i + 1);
+  if (!found.phases.empty()) out += ",phase";
   out += "\n";
+  std::vector<std::size_t> phase_of;
+  for (std::size_t p = 0; p < found.phases.size(); ++p)
+    phase_of.insert(phase_of.end(), std::size_t(found.phases[p].stages), p + 1);
   for (std::size_t k = 0; k < found.times.size(); ++k) {
     fmt::format_to(std::back_inserter(out), "{:.17g}", found.times[k]);
     for (const double x : found.state_rows[k]) fmt::format_to(std::back_inserter(out), ",{:.17g}", x);
@@ -38,7 +42,44 @@ std::string trajectory_csv(const ControlResult& found) {
       out += has_arrow ? fmt::format(",{:.17g}", found.control_rows[k][i]) : ",";
     for (std::size_t i = 0; i < costates; ++i)
       out += has_arrow ? fmt::format(",{:.17g}", found.costate_rows[k][i]) : ",";
+    if (!found.phases.empty()) out += has_arrow ? fmt::format(",{}", phase_of[k]) : ",";
     out += "\n";
+  }
+  return out;
+}
+
+/// A gnuplot string.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+/// Where one phase ends and the next begins, with their names.
+std::string phase_borders(const ControlResult& found) {
+  std::string out;
+  double begin = 0;
+  for (const PhaseResult& each : found.phases) {
+    if (begin > 0)
+      out += fmt::format("set arrow from {0:.17g}, graph 0 to {0:.17g}, graph 1 nohead dashtype 3\n", begin);
+    out += fmt::format("set label {} at {:.17g}, graph 0.95 center\n", quoted(each.name), begin + each.duration / 2);
+    begin += each.duration;
+  }
+  return out;
+}
+
+/// The bounds of controls, phase by phase.
+std::string phase_bounds(const ControlResult& found) {
+  std::string out;
+  double begin = 0;
+  for (const PhaseResult& each : found.phases) {
+    for (const auto* bounds : {&each.lower, &each.upper})
+      for (const double bound : *bounds)
+        if (std::isfinite(bound))
+          out += fmt::format(
+              "set arrow from {0:.17g}, {2:.17g} to {1:.17g}, {2:.17g} nohead dashtype 2 linecolor 'gray'\n", begin,
+              begin + each.duration, bound);
+    begin += each.duration;
   }
   return out;
 }
@@ -57,20 +98,24 @@ std::string gnuplot_script(const ControlResult& found) {
     controls += fmt::format("{}'trajectory.csv' using 'time':'{}' with steps linewidth 1.5 title '{}'",
                             controls.empty() ? "" : ", ", found.controls[i], found.controls[i]);
     for (const double bound : {found.lower[i], found.upper[i]})
-      if (std::isfinite(bound))
+      if (std::isfinite(bound) && found.phases.empty())
         controls += fmt::format(", {:.17g} with lines dashtype 2 linecolor 'gray' notitle", bound);
   }
   for (const auto& [file, terminal] : {std::pair("plot.svg", "svg size 900,700 background 'white' noenhanced"),
                                        std::pair("plot.png", "pngcairo size 900,700 noenhanced")})
     out += fmt::format(
-        "\nset terminal {}\nset output '{}'\nset multiplot layout 2,1\nset title 'state'\nplot {}\n"
-        "set title 'controls, and their bounds'\nplot {}\nunset multiplot\nset output\n",
-        terminal, file, states, controls);
+        "\nset terminal {}\nset output '{}'\n{}set multiplot layout 2,1\nset title 'state'\nplot {}\n"
+        "set title 'controls, and their bounds'\n{}plot {}\nunset multiplot\nset output\n{}",
+        terminal, file, phase_borders(found), states, phase_bounds(found), controls,
+        found.phases.empty() ? "" : "unset arrow\nunset label\n");
   return out;
 }
 
 /// "equality 2 of stage 17 by 0.03".
-std::string in_words(const ConstraintViolation& each) {
+std::string in_words(const ControlResult& found, const ConstraintViolation& each) {
+  if (each.is_equality && each.row >= found.equations)
+    return fmt::format("condition {} on a node of stage {} by {:.2g}", each.row - found.equations + 1, each.stage + 1,
+                       each.amount);
   return fmt::format("{} {} of stage {} by {:.2g}", each.is_equality ? "equality" : "inequality", each.row + 1,
                      each.stage + 1, each.amount);
 }
@@ -148,6 +193,8 @@ std::string control_text(const ControlResult& found) {
                                 to_string(r.status), found.by_ipopt ? ", by IPOPT" : "");
   out += fmt::format("  cost             {:.12g}{}\n", r.cost, r.is_strict_minimum ? ", a strict local minimum" : "");
   out += fmt::format("  duration         {:.12g}\n", found.times.back());
+  for (const PhaseResult& each : found.phases)
+    out += fmt::format("    {:<15}{:.12g} in {} stages\n", each.name, each.duration, each.stages);
   out += fmt::format("  KKT residual     {:.1e} stationarity, {:.1e} constraints, {:.1e} complementarity\n",
                      r.stationarity, r.violation, r.complementarity);
   out += crossover_text(found.crossover);
@@ -161,7 +208,7 @@ std::string control_text(const ControlResult& found) {
   for (const auto& [status, count] : found.outcomes) outcomes.push_back(fmt::format("{} {}", count, to_string(status)));
   out += fmt::format("  starts           {}; {} iterations in all, {} of the best; {}\n", fmt::join(outcomes, ", "),
                      found.iterations, r.iterations, duration(found.seconds));
-  for (const auto& each : r.worst) out += fmt::format("  violated         {}\n", in_words(each));
+  for (const auto& each : r.worst) out += fmt::format("  violated         {}\n", in_words(found, each));
   return out;
 }
 
@@ -176,6 +223,11 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   out["stages"] = found.control_rows.size();
   out["cost"] = r.cost;
   out["duration"] = found.times.back();
+  if (!found.phases.empty()) {
+    out["phases"] = nlohmann::ordered_json::array();
+    for (const PhaseResult& each : found.phases)
+      out["phases"].push_back({{"name", each.name}, {"stages", each.stages}, {"duration", each.duration}});
+  }
   if (!found.loop) {  // of which these are not one plan's
     out["strict_minimum"] = r.is_strict_minimum;
     out["stationarity"] = r.stationarity;
@@ -188,7 +240,7 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   out["starts"] = nlohmann::ordered_json::object();
   for (const auto& [status, count] : found.outcomes) out["starts"][std::string(to_string(status))] = count;
   out["violated"] = nlohmann::ordered_json::array();
-  for (const auto& each : r.worst) out["violated"].push_back(in_words(each));
+  for (const auto& each : r.worst) out["violated"].push_back(in_words(found, each));
   out["seconds"] = found.seconds;
   if (found.loop) out["loop"] = loop_json(*found.loop);
   return out;

@@ -13,7 +13,8 @@ std::span<const ControlProblem* const> control_problems() {
   static const std::array all{&double_integrator_problem(), &swing_up_problem(),       &planar_mass_problem(),
                               &low_thrust_problem(),        &dubins_car_problem(),     &reeds_shepp_car_problem(),
                               &hovercraft_problem(),        &steered_sleigh_problem(), &steered_car_problem(),
-                              &satellite_turn_problem(),    &pendulum_problem(),       &rigid_body_problem()};
+                              &satellite_turn_problem(),    &rolled_ball_problem(),    &pendulum_problem(),
+                              &rigid_body_problem(),        &two_link_arm_problem(),   &falling_cat_problem()};
   return all;
 }
 

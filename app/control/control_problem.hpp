@@ -35,6 +35,15 @@ struct LoopSummary {
   long iterations_of(double percent) const;
 };
 
+/// A phase of a solution.
+struct PhaseResult {
+  std::string name;
+  long stages = 0;
+  double duration = 0;
+  std::vector<double> lower;  ///< bounds of the controls, infinite where there are none
+  std::vector<double> upper;
+};
+
 /// A solution in the words of its scene: node by node, what a plot and a file show.
 struct ControlResult {
   std::string problem;
@@ -48,6 +57,8 @@ struct ControlResult {
   std::vector<std::vector<double>> inequality_rows;  ///< of stages: multipliers z
   std::vector<double> lower;                         ///< bounds of the controls, infinite where there are none
   std::vector<double> upper;
+  std::vector<PhaseResult> phases = {};  ///< none: the scene has no list of them
+  int equations = 0;                     ///< of a stage; behind them stand conditions on the node where it ends
   ControlReport report;
   CrossoverReport crossover;
   std::vector<double> costs;              ///< of all distinct solutions, cheapest first

@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <stdexcept>
 
 namespace lagroid::app {
 
@@ -67,7 +69,103 @@ KeyOf<NumberArray> end_key(const std::string& name, std::span<const std::string>
 }
 
 KeyOf<NumberArray> bound_key(const std::string& control) {
-  return {control, {2}, "", "least and largest value", {}, "none"};
+  return {control, {2}, "", "least and largest value; the same number twice fixes it", {}, "none"};
+}
+
+/// "free_start" or "free_end".
+KeyOf<Texts> free_end_key(const std::string& end) {
+  return {"free_" + end, {}, "", fmt::format("names of what may differ from the {}", end), std::vector<std::string>()};
+}
+/// "start_on" or "end_on".
+KeyOf<Texts> on_key(const std::string& name) {
+  return {name, {}, "", "formulas of the state that vanish there", std::vector<std::string>()};
+}
+
+namespace phase_keys {
+
+const KeyOf<Text> name{"name", {}, "", "what it is called", {}, "phase 1, phase 2 and so on"};
+const KeyOf<Number> duration{"duration", {positive}, "s", "of it; where it is free, the first guess"};
+const KeyOf<Flag> free{"free", {}, "", "true: the duration is an unknown", false};
+const KeyOf<NumberArray> range{"range", {2, nonnegative}, "s", "shortest and longest duration, where it is free", {},
+                               "any"};
+const KeyOf<Whole> stages{"stages", {1, 1'000'000}, "", "arrows of it", 50L};
+const KeyOf<Flag> constraints{"constraints", {}, "", "false: those of the problem do not hold in it", true};
+
+KeyOf<Number> through(const std::string& state) { return {state, {}, "", "what it is there", {}, "free"}; }
+
+}  // namespace phase_keys
+
+ControlBounds read_bounds(const Section& bounds, std::span<const std::string> controls,
+                          const ControlBounds& otherwise) {
+  ControlBounds out = otherwise;
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    if (!bounds.has(controls[i])) continue;
+    const auto range = read_key_or(bounds, bound_key(controls[i]), {});
+    if (!(range[0] <= range[1]))
+      bounds.fail(controls[i], fmt::format("{} is not below {}; give the lower bound first", range[0], range[1]));
+    out[i] = {range[0], range[1]};
+  }
+  return out;
+}
+
+/// Which of the names a list of them has.
+std::vector<bool> read_names(const Section& at, const KeyOf<Texts>& key, std::span<const std::string> names) {
+  std::vector<bool> out(names.size());
+  for (const std::string& each : read_key(at, key)) {
+    const auto found = std::find(names.begin(), names.end(), each);
+    if (found == names.end())
+      at.fail(key.name, fmt::format("\"{}\" is no number of the state; they are {}", each, fmt::join(names, ", ")));
+    out[std::size_t(found - names.begin())] = true;
+  }
+  return out;
+}
+
+std::shared_ptr<const StateFormulas> read_formulas(const Section& at, const KeyOf<Texts>& key,
+                                                   std::span<const std::string> states) {
+  const std::vector<std::string> texts = read_key(at, key);
+  if (texts.empty()) return nullptr;
+  try {
+    return std::make_shared<const StateFormulas>(texts, std::vector<std::string>(states.begin(), states.end()));
+  } catch (const std::invalid_argument& error) {
+    at.fail(key.name, error.what());
+  }
+}
+
+std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::string> states,
+                                    std::span<const std::string> controls, const ControlBounds& bounds) {
+  std::vector<PhaseScene> out;
+  const std::vector<Section> tables = scene.tables("phase");
+  for (const Section& table : tables) {
+    PhaseScene phase;
+    phase.table = table;
+    phase.name = read_key_or(table, phase_keys::name, fmt::format("phase {}", out.size() + 1));
+    if (std::any_of(out.begin(), out.end(), [&](const PhaseScene& other) { return other.name == phase.name; }))
+      table.fail("name", fmt::format("\"{}\" is the name of another phase", phase.name));
+    phase.duration = read_key(table, phase_keys::duration);
+    phase.duration_is_free = read_key(table, phase_keys::free);
+    if (table.has("range")) {
+      if (!phase.duration_is_free) table.fail("range", "its duration is given; leave out range, or let it be free");
+      const auto range = read_key_or(table, phase_keys::range, {});
+      if (!(range[0] < phase.duration && phase.duration < range[1]))
+        table.fail("range", fmt::format("the first guess of the duration, {}, is not between {} and {}", phase.duration,
+                                        range[0], range[1]));
+      phase.shortest = range[0];
+      phase.longest = range[1];
+    }
+    phase.stages = read_key(table, phase_keys::stages);
+    phase.constraints_hold = read_key(table, phase_keys::constraints);
+    phase.bounds = read_bounds(table.section_or_empty("bounds"), controls, bounds);
+    const Section through = table.section_or_empty("through");
+    for (const std::string& state : states)
+      phase.through.push_back(through.has(state) ? std::optional(read_key_or(through, phase_keys::through(state), 0))
+                                                 : std::nullopt);
+    phase.on = read_formulas(table, on_key("on"), states);
+    const bool is_last = out.size() + 1 == tables.size();
+    for (const char* key : {"through", "on"})
+      if (is_last && table.has(key)) table.fail(key, "the last phase ends where [boundary] says; leave it out");
+    out.push_back(std::move(phase));
+  }
+  return out;
 }
 
 }  // namespace
@@ -78,21 +176,30 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   const Section ends = scene.section("boundary", "start and end");
   out.start = read_key(ends, end_key("start", states));
   out.end = read_key(ends, end_key("end", states));
-  const Section horizon = scene.section("horizon", "duration and stages");
-  out.duration = read_key(horizon, duration_key);
-  out.duration_is_free = read_key(horizon, free_key);
-  out.stages = read_key(horizon, stages_key);
-  const Section bounds = scene.section_or_empty("bounds");
+  out.free_start = read_names(ends, free_end_key("start"), states);
+  out.free_end = read_names(ends, free_end_key("end"), states);
+  out.start_on = read_formulas(ends, on_key("start_on"), states);
+  out.end_on = read_formulas(ends, on_key("end_on"), states);
+  const auto require_free = [&](const char* key, const StateFormulas* on, const std::vector<bool>& free) {
+    const auto count = std::count(free.begin(), free.end(), true);
+    if (on != nullptr && on->size() > count)
+      ends.fail(
+          fmt::format("{}_on", key),
+          fmt::format("more formulas ({}) than numbers that are free ({}); name in free_{} what may differ from the {}",
+                      on->size(), count, key, key));
+  };
+  require_free("start", out.start_on.get(), out.free_start);
+  require_free("end", out.end_on.get(), out.free_end);
   constexpr double none = std::numeric_limits<double>::infinity();
-  for (const std::string& control : controls) {
-    if (!bounds.has(control)) {
-      out.bounds.emplace_back(-none, none);
-      continue;
-    }
-    const auto range = read_key_or(bounds, bound_key(control), {});
-    if (!(range[0] < range[1]))
-      bounds.fail(control, fmt::format("{} is not below {}; give the lower bound first", range[0], range[1]));
-    out.bounds.emplace_back(range[0], range[1]);
+  out.bounds = read_bounds(scene.section_or_empty("bounds"), controls, ControlBounds(controls.size(), {-none, none}));
+  out.phases = read_phases(scene, states, controls, out.bounds);
+  if (out.phases.empty()) {
+    const Section horizon = scene.section("horizon", "duration and stages");
+    out.duration = read_key(horizon, duration_key);
+    out.duration_is_free = read_key(horizon, free_key);
+    out.stages = read_key(horizon, stages_key);
+  } else if (scene.has("horizon")) {
+    scene.fail("horizon", "each [[phase]] has a duration and stages of its own; leave out [horizon]");
   }
   const Section solver = scene.section_or_empty("solver");
   out.method = choice_of(control_words, read_key(solver, method_key()));
@@ -104,6 +211,11 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   out.search.patience = read_key(solver, patience_key);
   out.search.solver.max_iterations = int(read_key(solver, iterations_key));
   if (scene.has("loop")) {
+    if (!out.phases.empty()) scene.fail("loop", "looks ahead in one phase; leave out [loop], or give [horizon]");
+    const auto is_free = [](bool free) { return free; };
+    if (std::any_of(out.free_start.begin(), out.free_start.end(), is_free) ||
+        std::any_of(out.free_end.begin(), out.free_end.end(), is_free))
+      scene.fail("loop", "is between states that are given; leave out boundary.free_start and boundary.free_end");
     if (out.duration_is_free) scene.fail("loop", "looks ahead for a time that is given; leave out horizon.free");
     if (out.method != ControlMethod::interior_point)
       scene.fail("loop", "is solved by the interior point method from sample to sample; leave out solver.method");
@@ -122,8 +234,25 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
   const std::vector<std::string> states = problem.states();
   std::vector<Key> bounds;
   for (const std::string& control : problem.controls()) bounds.push_back(bound_key(control));
-  return {KeyOf<Table>{"boundary", {{end_key("start", states), end_key("end", states)}}, "", "both ends"},
-          KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key}}, "", "how long, in how many arrows"},
+  std::vector<Key> through;
+  for (const std::string& state : states) through.push_back(phase_keys::through(state));
+  const Table phase{{phase_keys::name, phase_keys::duration, phase_keys::free, phase_keys::range, phase_keys::stages,
+                     phase_keys::constraints,
+                     optional_table("through", {through}, "numbers of the state where it ends"), on_key("on"),
+                     optional_table("bounds", {bounds}, "of the controls, in place of the scene's"),
+                     optional_table("parameters", {problem.parameters()}, "of the system, in place of the scene's")}};
+  return {KeyOf<Table>{"boundary",
+                       {{end_key("start", states), end_key("end", states), free_end_key("start"), free_end_key("end"),
+                         on_key("start_on"), on_key("end_on")}},
+                       "",
+                       "both ends"},
+          KeyOf<Table>{"horizon",
+                       {{duration_key, free_key, stages_key}},
+                       "",
+                       "how long, in how many arrows",
+                       {},
+                       "that of the phases"},
+          KeyOf<Tables>{"phase", {phase}, "", "one after another, in place of the horizon", {}, "one"},
           optional_table("bounds", {bounds}, "of the controls"),
           optional_table("solver", {{method_key(), starts_key, seed_key, tolerance_key, iterations_key, patience_key}},
                          "of the search"),

@@ -1,9 +1,13 @@
 #pragma once
-/// What every scene of an optimal control problem holds beside its parameters: ends, horizon, bounds, solver, loop.
+/// What every scene of an optimal control problem holds beside its parameters: ends, horizon or phases, bounds, solver,
+/// loop.
 
 #include "control_problem.hpp"
 #include "scene_loop.hpp"
+#include "state_condition.hpp"
 
+#include <cmath>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,13 +18,35 @@ namespace lagroid::app {
 
 enum class ControlMethod { interior_point, ipopt };
 
+using ControlBounds = std::vector<std::pair<double, double>>;  ///< of each control; twice the same: it is fixed
+
+/// A table [[phase]].
+struct PhaseScene {
+  Section table;  ///< whose [phase.parameters] take the place of the scene's
+  std::string name;
+  double duration = 1;
+  bool duration_is_free = false;
+  double shortest = 0;
+  double longest = HUGE_VAL;
+  long stages = 50;
+  ControlBounds bounds;
+  bool constraints_hold = true;                  ///< those of the problem
+  std::vector<std::optional<double>> through;    ///< of each number of the state where it ends; none: free
+  std::shared_ptr<const StateFormulas> on = {};  ///< what vanishes there
+};
+
 struct ControlScene {
   std::vector<double> start;
   std::vector<double> end;
+  std::vector<bool> free_start;  ///< of each number of the state
+  std::vector<bool> free_end;
+  std::shared_ptr<const StateFormulas> start_on = {};  ///< what vanishes at the start
+  std::shared_ptr<const StateFormulas> end_on = {};
+  std::vector<PhaseScene> phases;  ///< in place of the horizon
   double duration = 1;
   bool duration_is_free = false;
   long stages = 100;
-  std::vector<std::pair<double, double>> bounds;  ///< of each control
+  ControlBounds bounds;
   ControlMethod method = ControlMethod::interior_point;
   ControlSearchOptions search;
   std::optional<LoopScene> loop;
@@ -30,7 +56,7 @@ struct ControlScene {
 ControlScene read_control_scene(const Section& scene, std::span<const std::string> states,
                                 std::span<const std::string> controls);
 
-/// The keys of [boundary], [horizon], [bounds], [solver] and [loop] of a problem.
+/// The keys of [boundary], [horizon], [[phase]], [bounds], [solver] and [loop] of a problem.
 std::vector<Key> control_scene_keys(const ControlProblem& problem);
 
 }  // namespace lagroid::app

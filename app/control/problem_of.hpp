@@ -13,9 +13,11 @@
 #include <lagroid/solvers/processor_time.hpp>
 #include <lagroid/systems/control/flows/flow_states.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -87,6 +89,9 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   }
   std::unique_ptr<SceneLoop> loop(const Section& scene, const std::function<bool(int)>& keep_going) const override {
     const Posed posed = read(scene);
+    if (!posed.scene.phases.empty()) scene.fail("phase", "a loop looks ahead in one phase; give [horizon]");
+    if (posed.task.start_condition || posed.task.end_condition)
+      scene.fail("boundary", "a loop is between states that are given; leave out free_start and free_end");
     if (posed.scene.duration_is_free)
       scene.fail("horizon", "a loop looks ahead for a time that is given; leave out free");
     if (posed.scene.method != ControlMethod::interior_point)
@@ -109,16 +114,107 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       task.system = read_parameters<Parametrised>(scene);
     }
     posed.scene = read_control_scene(scene, states(), controls());
-    scene.finish();
     const ControlScene& read = posed.scene;
     task.boundary = arrow(task.system, Eigen::Map<const State>(read.start.data()), end_of(read));
+    if constexpr (requires { Sys::conserved; }) {
+      task.free_end = Sys::conserved;
+      for (std::size_t i = 0; i < read.start.size(); ++i)
+        if (Sys::conserved[i] && read.start[i] != read.end[i])
+          scene.fail("boundary", std::string(Sys::states[i]) +
+                                     " is conserved, whatever the controls; give the end that of the start");
+    }
     task.duration = read.duration;
     task.duration_is_free = read.duration_is_free;
-    for (int i = 0; i < Sys::controls; ++i) {
-      task.lower(i) = read.bounds[std::size_t(i)].first;
-      task.upper(i) = read.bounds[std::size_t(i)].second;
-    }
+    set_bounds(task, read.bounds);
+    pose_ends(scene, posed);
+    for (const PhaseScene& phase : read.phases) task.phases.push_back(posed_phase(posed, phase));
+    scene.finish();
     return posed;
+  }
+  template <class Bounded> static void set_bounds(Bounded& of, const ControlBounds& bounds) {
+    for (int i = 0; i < int(bounds.size()); ++i) std::tie(of.lower(i), of.upper(i)) = bounds[std::size_t(i)];
+  }
+  /// An attitude is free as a whole or not at all: one number of a rotation vector means nothing by itself.
+  template <class Fail> static void require_whole_attitudes(const std::vector<bool>& free, const Fail& fail) {
+    for (int i = 1; i < States::size; ++i)
+      if (States::is_attitude(i) && States::is_attitude(i - 1) && free[std::size_t(i)] != free[std::size_t(i - 1)])
+        fail("an attitude is given by all three of its numbers, or free in all");
+  }
+  /// Ends that are free in part: every displacement is, and what is given are conditions.
+  static void pose_ends(const Section& scene, Posed& posed) {
+    const ControlScene& read = posed.scene;
+    ControlTask<Sys>& task = posed.task;
+    const State start = Eigen::Map<const State>(read.start.data());
+    const auto pose = [&](const char* key, const std::vector<bool>& free, const State& at, const auto& on, auto& along,
+                          auto& condition) {
+      if (std::none_of(free.begin(), free.end(), [](bool each) { return each; })) return;
+      require_whole_attitudes(free, [&](const char* why) { scene.section("boundary", "").fail(key, why); });
+      typename StateCondition<G>::Given given{};
+      bool any = on != nullptr;
+      for (std::size_t i = 0; i < given.size(); ++i) {
+        given[i] = !free[i] && !is_conserved(i);
+        any = any || given[i];
+      }
+      along.fill(true);
+      if (any) condition = std::make_shared<const StateCondition<G>>(start, at, given, on);
+    };
+    pose("free_start", read.free_start, start, read.start_on, task.free_start, task.start_condition);
+    pose("free_end", read.free_end, end_of(read), read.end_on, task.free_end, task.end_condition);
+  }
+  static bool is_conserved(std::size_t i) {
+    if constexpr (requires { Sys::conserved; }) {
+      return Sys::conserved[i];
+    } else {
+      return false;
+    }
+  }
+  static ControlPhase<Sys> posed_phase(const Posed& posed, const PhaseScene& read) {
+    ControlPhase<Sys> phase;
+    phase.system = posed.task.system;
+    phase.stages = read.stages;
+    phase.duration = read.duration;
+    phase.duration_is_free = read.duration_is_free;
+    phase.shortest = read.shortest;
+    phase.longest = read.longest;
+    if constexpr (is_actuated) {
+      phase.system.system = with_parameters(read.table, phase.system.system);
+    } else {
+      phase.system = with_parameters(read.table, phase.system);
+    }
+    set_bounds(phase, read.bounds);
+    phase.inequalities_hold = read.constraints_hold;
+    // Where it might end: what is free there, in the share of the time that has passed.
+    double before = 0;
+    double all = 0;
+    for (const PhaseScene& each : posed.scene.phases) {
+      all += each.duration;
+      if (&each <= &read) before += each.duration;
+    }
+    const State start = Eigen::Map<const State>(posed.scene.start.data());
+    State at = start + before / all * (end_of(posed.scene) - start);
+    typename StateCondition<G>::Given given{};
+    std::vector<bool> free(given.size(), true);
+    bool any = false;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      if (!read.through[i]) continue;
+      any = given[i] = true;
+      free[i] = false;
+      at(int(i)) = *read.through[i];
+    }
+    require_whole_attitudes(free, [&](const char* why) { read.table.fail("through", why); });
+    if (any) phase.guess = arrow(posed.task.system, start, at);
+    if (any || read.on) phase.end_condition = std::make_shared<const StateCondition<G>>(start, at, given, read.on);
+    return phase;
+  }
+  /// With those of [phase.parameters].
+  static Parametrised with_parameters(const Section& phase, Parametrised system) {
+    const Section parameters = phase.section_or_empty("parameters");
+    for_each_parameter<Parametrised>([&](auto p) {
+      if constexpr (requires { p.required; }) p.required = false;
+      reading::read(parameters, p, system);
+    });
+    if (const auto refusal = refusal_of(system)) reading::blame(parameters, *refusal);
+    return system;
   }
   static State end_of(const ControlScene& scene) { return Eigen::Map<const State>(scene.end.data()); }
   static ControlSearch<Sys> search(const Posed& posed, const std::function<bool(int)>& keep_going) {
@@ -149,12 +245,12 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       report_ = loop_.follow(arrow(system_, state_, end_), usable_);
     }
     std::vector<double> control() const override { return {loop_.control().begin(), loop_.control().end()}; }
-    double cost() const override { return system_.cost(plan().arrows.front(), loop_.control(), plan().step); }
+    double cost() const override { return system_.cost(plan().arrows.front(), loop_.control(), plan().step()); }
     std::vector<double> predicted() const override {
       const State next = States::reached(state_, plan().arrows.front());
       return {next.begin(), next.end()};
     }
-    double step() const override { return plan().step; }
+    double step() const override { return plan().step(); }
     long stages() const override { return long(plan().arrows.size()); }
     long restarts() const override { return loop_.restarts(); }
     const Latency& latency() const override { return loop_.latency(); }
@@ -194,15 +290,26 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.states = states();
     out.controls = controls();
     out.by_ipopt = posed.scene.method == ControlMethod::ipopt;
+    out.equations = Sys::equalities;
     out.report = best.report;
     out.crossover = best.crossover;
     out.outcomes = found.outcomes;
     out.iterations = found.iterations;
     for (const auto& each : found.minima) out.costs.push_back(each.report.cost);
     ArrowOf<G> reached = groupoid.unit(groupoid.source(best.trajectory.arrows.front()));
+    if (best.trajectory.start) reached = *best.trajectory.start;
+    for (std::size_t p = 0; p < posed.scene.phases.size(); ++p) {
+      const ControlPhase<Sys>& phase = posed.task.phases[p];
+      const PhaseSteps& steps = best.trajectory.phases[p];
+      out.phases.push_back({posed.scene.phases[p].name,
+                            steps.stages,
+                            double(steps.stages) * steps.step,
+                            {phase.lower.begin(), phase.lower.end()},
+                            {phase.upper.begin(), phase.upper.end()}});
+    }
     const auto row = [&](std::size_t node) {
       const State state = States::reached(start, reached);
-      out.times.push_back(double(node) * best.trajectory.step);
+      out.times.push_back(best.trajectory.time(long(node)));
       out.state_rows.emplace_back(state.begin(), state.end());
     };
     row(0);

@@ -1,4 +1,5 @@
-#include "fit.hpp"
+#include "computed_columns.hpp"
+#include "fit/fit.hpp"
 #include "gradient_table.hpp"
 #include "system_gradients.hpp"
 #include "uncertainty.hpp"
@@ -24,12 +25,26 @@ namespace lagroid::app {
 namespace {
 
 struct GradientOptions : SceneOptions {
+  std::vector<std::string> columns;
   std::vector<std::string> of{"final"};
   std::vector<std::string> by{"initial", "parameters"};
   bool check = false;
   std::vector<std::string> deviations;
+  std::string covariance;
   Draws draws;
 };
+
+/// --column of both commands.
+void add_columns_option(CLI::App& app, std::vector<std::string>& columns) {
+  app.add_option("--column", columns,
+                 "NAME=EXPRESSION of columns and parameters.NAME: one more column of the run; may be repeated")
+      ->allow_extra_args(false);
+}
+std::vector<NamedText> named_texts(const std::vector<std::string>& words) {
+  std::vector<NamedText> out;
+  for (const std::string& word : words) out.push_back(named_text(word));
+  return out;
+}
 
 /// Prints what was found, and how it went.
 template <class Found> int report(const SceneOptions& options, const Found& found, const std::string& failure) {
@@ -46,7 +61,7 @@ void note_start(const Section& scene, const GradientSubject& subject, GradientTa
   table.notes.insert(table.notes.end(), subject.notes.begin(), subject.notes.end());
   const bool by_parameters = std::any_of(table.columns.begin(), table.columns.end(),
                                          [](const std::string& column) { return column.rfind("parameters.", 0) == 0; });
-  if (!by_parameters) return;
+  if (!by_parameters || subject.begun_by) return;
   const Section initial = scene.section_or_empty("initial");
   for (const char* key : {"velocity", "rates", "spin"}) {
     if (!initial.has(key)) continue;
@@ -60,8 +75,6 @@ void note_start(const Section& scene, const GradientSubject& subject, GradientTa
 
 /// Refuses scenes whose runs have no derivatives, of which this program knows no family.
 void require_derivatives(const Section& scene) {
-  if (scene.has(keys::bodies))
-    scene.fail(keys::bodies, "runs of bodies have no derivatives; gradient and fit take scenes of one system");
   if (!scene.has(keys::system)) return;
   const std::string system = scene.text(keys::system, "the name of a system");
   if (std::find(keys::on_spheres.begin(), keys::on_spheres.end(), system) != keys::on_spheres.end())
@@ -86,19 +99,26 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
       return refuse(options.json, exit_bad_input, "no_derivative", refusal.what());
     }
   }
+  if (scene.has(keys::bodies)) scene.fail(keys::bodies, "this program has no derivatives of runs of bodies");
   return refuse(
       options.json, exit_bad_input, "no_derivative",
       fmt::format("{}: there are no derivatives of runs of {}", options.scene, module_of_scene(scene).name()));
 }
 
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
-  return with_subject(options, subjects, [&](const GradientSubject& subject, const Section& scene) {
-    if (!options.deviations.empty()) {
-      if (subject.cost) throw GradientRefused("--deviations are of runs; a boundary value has a gradient alone");
-      Uncertainty found = uncertainty_of(subject, options.of, deviations_of(options.deviations), options.draws);
+  return with_subject(options, subjects, [&](const GradientSubject& plain, const Section& scene) {
+    const auto more = [&](const GradientSubject& of) { return with_columns(of, named_texts(options.columns)); };
+    if (!options.deviations.empty() || !options.covariance.empty()) {
+      if (plain.cost) throw GradientRefused("errors are carried along runs; a boundary value has a gradient alone");
+      const InputErrors errors = options.covariance.empty() ? independent_errors(plain, options.deviations)
+                                                            : fitted_errors(options.covariance);
+      const GradientSubject subject = more(moved_to(plain, errors));
+      Uncertainty found = uncertainty_of(subject, options.of, errors, options.draws);
       note_start(scene, subject, found.table);
       return report(options, found, found.table.failure);
     }
+    if (options.draws.count > 0) throw GradientRefused("--draws are of errors: give --deviations or --covariance");
+    const GradientSubject subject = more(plain);
     std::vector<std::string> by = options.by;
     std::vector<std::string> of = options.of;
     if (subject.cost && of == GradientOptions{}.of) of = {"cost"};
@@ -115,7 +135,7 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
 struct FitCommandOptions : SceneOptions {
   std::vector<std::string> data;
   FitOptions fit;
-  std::vector<std::string> sigma, bounds;
+  std::vector<std::string> columns, combinations, sigma, bounds;
   std::string residuals;
 };
 
@@ -130,6 +150,7 @@ double number_in(const std::string& word, std::size_t from, std::size_t to, cons
 }
 FitOptions fit_options(const FitCommandOptions& options) {
   FitOptions out = options.fit;
+  out.combinations = named_texts(options.combinations);
   for (const std::string& word : options.sigma) {
     const std::size_t at = std::min(word.find('='), word.size());
     const double sigma = number_in(word, std::min(at + 1, word.size()), word.size(), "COLUMN=SIGMA");
@@ -148,7 +169,8 @@ FitOptions fit_options(const FitCommandOptions& options) {
 }
 
 int fit_of_scene(const FitCommandOptions& options, const std::vector<AskGradient>& subjects) {
-  return with_subject(options, subjects, [&](const GradientSubject& subject, const Section&) {
+  return with_subject(options, subjects, [&](const GradientSubject& plain, const Section&) {
+    const GradientSubject subject = with_columns(plain, named_texts(options.columns));
     const Fit fit = fit_scene(subject, options.data, fit_options(options));
     if (fit.failure.empty() && !options.residuals.empty()) write_text(csv_of(fit), options.residuals);
     const int code = report(options, fit, fit.failure);
@@ -168,6 +190,10 @@ int fit_program(int argc, char** argv, const std::vector<AskGradient>& subjects)
       ->allow_extra_args(false);
   app.add_option("--of", options.fit.columns, "columns of the data to use, separated by commas (default: all)")
       ->delimiter(',')
+      ->allow_extra_args(false);
+  add_columns_option(app, options.columns);
+  app.add_option("--combination", options.combinations,
+                 "NAME=EXPRESSION of initial.NAME and parameters.NAME: how well it is known; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--sigma", options.sigma,
                  "COLUMN=SIGMA, separated by commas: the standard deviations of its errors (default: 1)")
@@ -214,15 +240,19 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
          "(default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_columns_option(app, options.columns);
   auto* deviations =
       app.add_option("--deviations", options.deviations,
                      "initial.NAME=SIGMA or parameters.NAME=SIGMA, separated by commas: what independent "
                      "errors of these standard deviations become");
   deviations->delimiter(',')->allow_extra_args(false)->excludes("--wrt");
+  app.add_option("--covariance", options.covariance,
+                 "what lagroid fit --json printed, as a file: what the errors of its solution become, from there")
+      ->excludes("--wrt")
+      ->excludes(deviations);
   app.add_option("--draws", options.draws.count,
-                 "with --deviations: compare with so many runs from starts drawn at random")
-      ->check(CLI::Range(2L, 10'000'000L))
-      ->needs(deviations);
+                 "with one of these: compare with so many runs from starts drawn at random")
+      ->check(CLI::Range(2L, 10'000'000L));
   app.add_option("--seed", options.draws.seed, "of those draws")->needs("--draws");
   app.add_flag("--check", options.check, "compare with extrapolated differences of runs");
   return command_line(app, argc, argv, options, [&] { return gradient_of_scene(options, subjects); });

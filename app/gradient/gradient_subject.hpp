@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
@@ -54,6 +55,12 @@ struct GradientSubject {
   std::function<std::unique_ptr<LinearisedMotion>(const std::vector<std::string>& parameters,
                                                   const std::vector<Nudge>&)>
       begin;
+  /// The state at the start by `start` and these parameters, where that is given by other numbers, as velocities; null
+  /// where the state itself is.
+  std::function<Eigen::MatrixXd(const std::vector<std::string>& parameters, const std::vector<Nudge>&)> begun_by =
+      nullptr;
+  /// Numbers by which there is no derivative, and why.
+  std::vector<std::pair<std::string, std::string>> refused = {};
   std::vector<std::string> notes = {};   ///< on what derivatives hold
   std::vector<std::string> events = {};  ///< of the scene, by their names
   /// The run through them, observed where they happen and at a node, or at the end for -1; null in a scene without.

@@ -3,8 +3,8 @@
 ///
 ///     const GradientSubject subject = gradient_subject_of(module.prepare(scene, context), scene);
 ///
-/// Errors: SceneError for an initial value that is not by equal, adaptive or prescribed steps, or has events but no
-/// equal steps of order two; std::invalid_argument for an event without derivatives.
+/// Errors: SceneError for an initial value that is not by equal, adaptive, prescribed or controlled steps, or has
+/// events but no equal steps of order two; std::invalid_argument for an event without derivatives.
 
 #include "../scenes/simulation.hpp"
 #include "../scenes/system_module.hpp"
@@ -18,7 +18,7 @@
 #include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/sensitivity/explicit/linearised_splitting.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
-#include <lagroid/solvers/sensitivity/times/linearised_timed_motion.hpp>
+#include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
 
 #include <fmt/format.h>
 
@@ -89,7 +89,7 @@ std::unique_ptr<LinearisedMotion> split_motion(const Started<Sys>& from, const C
 template <TimeMode mode, DiscreteSystem Sys, class Observe>
 std::unique_ptr<LinearisedMotion> timed_motion(const Started<Sys>& from, const std::vector<std::string>& parameters,
                                                const Observe& observe) {
-  if constexpr (VaryingSteps<Sys, mode>) {
+  if constexpr (TimedDerivatives<Sys, mode>) {
     const auto with_time = [observe](const ObservedTimedNode<Sys>& node) {
       constexpr int first = Sys::GroupoidType::object_coordinate_count() + Sys::dimension;
       const VariedVector seen = observe(node);
@@ -97,8 +97,7 @@ std::unique_ptr<LinearisedMotion> timed_motion(const Started<Sys>& from, const s
       all << seen.head(first), node.time, seen.tail(seen.size() - first);
       return all;
     };
-    return std::make_unique<LinearisedTimedMotion<Sys, mode>>(from.system, from.start, from.configuration, parameters,
-                                                              with_time);
+    return std::make_unique<TimedMotion<Sys, mode>>(from.system, from.start, from.configuration, parameters, with_time);
   } else {
     return nullptr;  // no scene of this system has such steps
   }
@@ -144,13 +143,18 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   if (!prepared.begin) return cost_subject_of(prepared, scene);
   if (!prepared.stated)
     scene.fail("time",
-               "gradient takes equal steps, perhaps composed, adaptive or prescribed ones, solved by Newton to "
-               "round-off, and splittings; leave out other modes and methods, without_root, [solver] and reduce");
+               "gradient takes equal steps, perhaps composed, and adaptive, prescribed or controlled ones, solved by "
+               "Newton to round-off, and splittings; leave out other modes and methods, without_root, [solver] and "
+               "reduce");
   Sys system = prepared.system;
   const StatedInitialValue<Sys>& value = *prepared.stated;
   const TimeMode mode = value.choice.options.mode;
   const Composition& composition = value.choice.options.composition;
   const bool split = by_splitting(value.choice);
+  if (mode == TimeMode::controlled && !TimedDerivatives<Sys, TimeMode::controlled>)
+    scene.fail("time",
+               "the time scale by which steps of this system are controlled has no derivatives; take "
+               "mode = \"adaptive\" or equal steps");
   constexpr int n = G::dimension;
   GradientSubject out;
   if (value.choice.accuracy > 0) {
@@ -162,8 +166,7 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   out.steps = value.extent.steps;
   // Of pairs the displacement is that of the position itself.
   constexpr bool on_pairs = differentiating::is_pair<G>;
-  name_all(out.observed, on_pairs ? "position" : "object", G::object_coordinate_count(),
-           on_pairs ? value.presentation.position : std::vector<std::string>());
+  name_all(out.observed, on_pairs ? "position" : "object", G::object_coordinate_count(), value.presentation.position);
   name_all(out.observed, "momentum", n, value.presentation.momentum);
   if (mode != TimeMode::fixed) out.observed.push_back({"time", "t"});
   // On pairs it is where the motion began and the position.
@@ -197,6 +200,8 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     if (mode == TimeMode::adaptive) return differentiating::timed_motion<TimeMode::adaptive>(from, parameters, observe);
     if (mode == TimeMode::prescribed)
       return differentiating::timed_motion<TimeMode::prescribed>(from, parameters, observe);
+    if (mode == TimeMode::controlled)
+      return differentiating::timed_motion<TimeMode::controlled>(from, parameters, observe);
     return std::make_unique<LinearisedMotionOf<Sys>>(from.system, differentiating::integrator_of(from, composition),
                                                      parameters, observe);
   };

@@ -63,13 +63,9 @@ std::string place_of(const std::string& row) { return row.substr(0, row.find('.'
 Propagated propagated(const GradientSubject& subject, const GradientColumns& columns, const Observed& observed,
                       std::size_t rows) {
   const auto motion = subject.begin(names_of(subject, columns), {});
-  const Eigen::Index states = motion->states();
-  const auto from_start = Eigen::Index(columns.start.size());
-  const auto count = from_start + Eigen::Index(columns.parameters.size());
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(states + Eigen::Index(columns.parameters.size()), count);
-  for (Eigen::Index j = 0; j < from_start; ++j) directions(columns.start[std::size_t(j)], j) = 1;
-  for (Eigen::Index j = from_start; j < count; ++j) directions(states + j - from_start, j) = 1;
-  if (4 * rows >= std::size_t(count)) return propagate_forward(*motion, subject.steps, directions, observed);
+  const Eigen::MatrixXd directions = directions_of(subject, columns, {}, motion->states());
+  if (4 * rows >= std::size_t(directions.cols()))
+    return propagate_forward(*motion, subject.steps, directions, observed);
   Propagated out = propagate_backward(*motion, subject.steps, observed);
   if (out.converged()) out.derivatives = Eigen::MatrixXd(out.derivatives * directions);
   return out;
@@ -114,6 +110,21 @@ std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::s
 std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns) {
   std::vector<std::string> out;
   for (const int i : columns.parameters) out.push_back(subject.parameters[std::size_t(i)].name);
+  return out;
+}
+
+Eigen::MatrixXd directions_of(const GradientSubject& subject, const GradientColumns& columns,
+                              const std::vector<Nudge>& nudges, Eigen::Index states) {
+  const auto from_start = Eigen::Index(columns.start.size()), by_parameters = Eigen::Index(columns.parameters.size());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(states + by_parameters, from_start + by_parameters);
+  out.bottomRightCorner(by_parameters, by_parameters).setIdentity();
+  if (!subject.begun_by) {
+    for (Eigen::Index j = 0; j < from_start; ++j) out(columns.start[std::size_t(j)], j) = 1;
+    return out;
+  }
+  const Eigen::MatrixXd begun = subject.begun_by(names_of(subject, columns), nudges);
+  for (Eigen::Index j = 0; j < from_start; ++j) out.col(j).head(states) = begun.col(columns.start[std::size_t(j)]);
+  out.topRightCorner(states, by_parameters) = begun.rightCols(by_parameters);
   return out;
 }
 
@@ -222,13 +233,18 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
   }
   const Eigen::MatrixXd changes = table.derivatives * sizes.asDiagonal();
   const Eigen::MatrixXd off = (table.derivatives - table.differences) * sizes.asDiagonal();
-  table.digits_agreed = 16;
+  table.within_rounding = true;
+  double fewest = 16, of_rounding = 0;
   for (Eigen::Index i = 0; i < off.rows(); ++i) {
     const double most = off.row(i).cwiseAbs().maxCoeff(), size = changes.row(i).cwiseAbs().maxCoeff();
     const double of_group = rounding[group_of_row(subject, table, std::size_t(i))];
-    if (most > (of_group > 0 ? of_group : 1e-12 * table.values.cwiseAbs().maxCoeff()))
-      table.digits_agreed = std::min(table.digits_agreed, std::max(0.0, std::log10(size / most)));
+    const double least = of_group > 0 ? of_group : 1e-12 * table.values.cwiseAbs().maxCoeff();
+    if (least > 0) of_rounding = std::max(of_rounding, std::log10(std::max(1.0, size / least)));
+    if (most <= least) continue;
+    table.within_rounding = false;
+    fewest = std::min(fewest, std::max(0.0, std::log10(size / most)));
   }
+  table.digits_agreed = table.within_rounding ? std::min(16.0, of_rounding) : fewest;
 }
 
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words) {
@@ -240,6 +256,8 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
       into = &out.start;
       more = chosen_names(subject.start, word, of_start->name);
     } else if (const auto of_system = split_after(word, "parameters")) {
+      for (const auto& [name, why] : subject.refused)
+        if (name == of_system->name) throw GradientRefused(fmt::format("{}: {}", word, why));
       into = &out.parameters;
       more = chosen_names(subject.parameters, word, of_system->name);
     } else {
@@ -345,7 +363,12 @@ std::string text_of(const GradientTable& table) {
   }
   out += words_of_growth(table);
   if (table.checked)
-    out += fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
+    out += table.within_rounding
+               ? fmt::format(
+                     "  extrapolated differences of runs agree as far as they tell: their rounding leaves {:.1f} "
+                     "digits\n",
+                     table.digits_agreed)
+               : fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
   return out;
 }
 
@@ -374,6 +397,7 @@ std::string json_of(const GradientTable& table) {
     if (table.checked) {
       out["differences"] = matrix(table.differences);
       out["digits_agreed"] = table.digits_agreed;
+      out["within_rounding"] = table.within_rounding;
     }
   }
   return out.dump(2);

@@ -43,6 +43,7 @@ struct GradientTable {
   bool checked = false;
   Eigen::MatrixXd differences;        ///< extrapolated, of the program
   double digits_agreed = 0;           ///< the fewest, to the largest of each row
+  bool within_rounding = false;       ///< whether all rows agree to the rounding of differences, which has these digits
   std::string failure;                ///< of a run that ended early
   std::vector<EventRow> event_rows;   ///< through events: what the rows are
   std::vector<std::size_t> happened;  ///< through events: which, in their order
@@ -58,6 +59,9 @@ struct GradientColumns {
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words);
 /// The names of its parameters.
 std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns);
+/// Those directions of the state and, below it, the parameters, in which it begins: a column for each of these.
+Eigen::MatrixXd directions_of(const GradientSubject& subject, const GradientColumns& columns,
+                              const std::vector<Nudge>& nudges, Eigen::Index states);
 /// What `name` chooses: all, those of a group, or one.
 std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::string& word, const std::string& name);
 

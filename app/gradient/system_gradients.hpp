@@ -19,6 +19,9 @@ using AskGradient = std::optional<GradientSubject> (*)(const Section& scene);
 /// Of a scene of the library's Poisson systems, without events (SceneError).
 std::optional<GradientSubject> poisson_gradient(const Section& scene);
 
+/// Of a scene of bodies, by equal steps of order 2, without events (SceneError).
+std::optional<GradientSubject> bodies_gradient(const Section& scene);
+
 /// Of a scene that holds its formulas, without constraints and events (SceneError).
 std::optional<GradientSubject> formula_gradient(const Section& scene);
 

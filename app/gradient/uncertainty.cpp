@@ -1,5 +1,8 @@
 #include "uncertainty.hpp"
 
+#include "../reading/data_set.hpp"
+
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/solvers/poisson/wiener_path.hpp>
 
 #include <fmt/format.h>
@@ -8,30 +11,44 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <utility>
 
 namespace lagroid::app {
 
 namespace {
 
-/// What a column is nudged by.
-struct Nudged {
-  Nudge nudge;
-  double deviation;
-};
-
-/// Draw number `draw` of all columns.
-std::vector<Nudge> drawn(const std::vector<Nudged>& columns, const WienerPath& stream, long draw) {
+/// What the columns of some errors are nudged by: one each.
+std::vector<Nudge> nudges_of(const GradientSubject& subject, const InputErrors& errors, const Eigen::VectorXd& by) {
   std::vector<Nudge> out;
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    out.push_back(columns[j].nudge);
-    out.back().by = columns[j].deviation * stream.normals(draw, std::uint32_t(j / 2))[j % 2];
+  for (std::size_t j = 0; j < errors.names.size(); ++j) {
+    const GradientColumns columns = columns_of(subject, {errors.names[j]});
+    for (const int i : columns.start) out.push_back({.index = i, .by = by(Eigen::Index(j))});
+    for (const int i : columns.parameters)
+      out.push_back({.parameter = subject.parameters[std::size_t(i)].name, .by = by(Eigen::Index(j))});
   }
   return out;
 }
 
-Uncertainty::Sample sample(const GradientSubject& subject, const GradientTable& table,
-                           const std::vector<Nudged>& columns, const Draws& draws) {
+/// A with A A^T = covariance.
+Eigen::MatrixXd root_of(const InputErrors& errors) {
+  if (errors.are_independent) return errors.covariance.diagonal().cwiseSqrt().asDiagonal();
+  const SymmetricEigenvectors found = symmetric_eigenvectors(errors.covariance);
+  return found.vectors * found.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+/// Draw number `draw` of all columns.
+Eigen::VectorXd drawn(const Eigen::MatrixXd& root, const WienerPath& stream, long draw) {
+  Eigen::VectorXd normals(root.cols());
+  for (Eigen::Index j = 0; j < normals.size(); ++j)
+    normals(j) = stream.normals(draw, std::uint32_t(j / 2))[std::size_t(j % 2)];
+  return root * normals;
+}
+
+Uncertainty::Sample sample(const GradientSubject& subject, const GradientTable& table, const InputErrors& errors,
+                           const Draws& draws) {
   Uncertainty::Sample out;
+  const Eigen::MatrixXd root = root_of(errors);
   const WienerPath stream{.seed = draws.seed};
   const auto size = table.values.size();
   // Of differences to the middle run, which are small, and their products (Welford).
@@ -39,7 +56,7 @@ Uncertainty::Sample sample(const GradientSubject& subject, const GradientTable& 
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(size, size);
   long counted = 0;
   for (; out.runs < draws.count; ++out.runs) {
-    const auto values = values_of(subject, table, drawn(columns, stream, out.runs));
+    const auto values = values_of(subject, table, nudges_of(subject, errors, drawn(root, stream, out.runs)));
     if (!values || !values->allFinite()) {
       ++out.failed;
       continue;
@@ -64,14 +81,16 @@ double correlation(const Eigen::MatrixXd& covariance, Eigen::Index i, Eigen::Ind
 
 /// How much of a row's variance is due to a column.
 double share(const Uncertainty& u, Eigen::Index row, Eigen::Index column) {
-  const double part = u.table.derivatives(row, column) * u.deviations(column);
+  const double part = u.table.derivatives(row, column) * deviation_at(u.errors.covariance, column);
   return u.covariance(row, row) > 0 ? part * part / u.covariance(row, row) : 0;
 }
 
 }  // namespace
 
-std::vector<Deviation> deviations_of(const std::vector<std::string>& words) {
-  std::vector<Deviation> out;
+InputErrors independent_errors(const GradientSubject& subject, const std::vector<std::string>& words) {
+  InputErrors out;
+  std::vector<std::string> of_start, of_parameters;
+  std::vector<double> start, parameters;
   for (const std::string& word : words) {
     const std::size_t at = word.find('=');
     double size = -1;
@@ -81,34 +100,91 @@ std::vector<Deviation> deviations_of(const std::vector<std::string>& words) {
     }
     if (!(size > 0 && std::isfinite(size)))
       throw GradientRefused(fmt::format("{}: give NAME=SIGMA, a positive standard deviation", word));
-    out.push_back({word.substr(0, at), size});
+    const GradientColumns columns = columns_of(subject, {word.substr(0, at)});
+    for (const int i : columns.start) of_start.push_back("initial." + subject.start[std::size_t(i)].name);
+    start.insert(start.end(), columns.start.size(), size);
+    for (const std::string& name : names_of(subject, columns)) of_parameters.push_back("parameters." + name);
+    parameters.insert(parameters.end(), columns.parameters.size(), size);
+  }
+  out.names = of_start;
+  out.names.insert(out.names.end(), of_parameters.begin(), of_parameters.end());
+  start.insert(start.end(), parameters.begin(), parameters.end());
+  std::vector<std::string> sorted = out.names;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    throw GradientRefused("a start or a parameter has two deviations; give each one");
+  out.covariance = Eigen::Map<const Eigen::VectorXd>(start.data(), Eigen::Index(start.size())).cwiseAbs2().asDiagonal();
+  return out;
+}
+
+InputErrors fitted_errors(const std::string& file) {
+  InputErrors out;
+  out.are_independent = false;
+  std::ifstream in(file);
+  if (!in) throw DataError(fmt::format("{}: cannot be read; write it by lagroid fit --json", file));
+  try {
+    const nlohmann::json fit = nlohmann::json::parse(in);
+    for (const auto& unknown : fit.at("unknowns")) {
+      out.names.push_back(unknown.at("name").get<std::string>());
+      out.values.push_back(unknown.at("value").get<double>());
+      if (unknown.at("deviation").is_null())
+        throw DataError(fmt::format("{}: {} is not told by its data; fit fewer unknowns", file, out.names.back()));
+    }
+    const auto n = Eigen::Index(out.names.size());
+    out.covariance.resize(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index k = 0; k < n; ++k)
+        out.covariance(i, k) = fit.at("covariance").at(std::size_t(i)).at(std::size_t(k)).get<double>();
+  } catch (const nlohmann::json::exception&) {
+    throw DataError(fmt::format("{}: it has no unknowns with their covariance; write it by lagroid fit --json", file));
   }
   return out;
 }
 
-Uncertainty uncertainty_of(const GradientSubject& subject, const std::vector<std::string>& of,
-                           const std::vector<Deviation>& deviations, const Draws& draws) {
-  std::vector<std::string> words;
-  std::vector<Nudged> start, parameters;
-  for (const Deviation& each : deviations) {
-    words.push_back(each.name);
-    const GradientColumns columns = columns_of(subject, {each.name});
-    for (const int i : columns.start) start.push_back({{.index = i}, each.size});
-    for (const int i : columns.parameters)
-      parameters.push_back({{.parameter = subject.parameters[std::size_t(i)].name}, each.size});
+GradientSubject moved_to(const GradientSubject& subject, const InputErrors& errors) {
+  if (errors.values.empty()) return subject;
+  GradientSubject out = subject;
+  std::vector<Nudge> offsets;
+  for (std::size_t j = 0; j < errors.names.size(); ++j) {
+    const GradientColumns columns = columns_of(subject, {errors.names[j]});
+    if (columns.start.size() + columns.parameters.size() != 1)
+      throw GradientRefused(fmt::format("{}: it is no single number of this scene", errors.names[j]));
+    const bool of_start = !columns.start.empty();
+    const std::size_t place =
+        of_start ? std::size_t(columns.start.front()) : subject.start.size() + std::size_t(columns.parameters.front());
+    const double by = errors.values[j] - subject.sizes[place];
+    out.sizes[place] += by;
+    offsets.push_back(of_start ? Nudge{.index = columns.start.front(), .by = by}
+                               : Nudge{.parameter = names_of(subject, columns).front(), .by = by});
   }
+  const auto and_offsets = [offsets](std::vector<Nudge> nudges) {
+    nudges.insert(nudges.end(), offsets.begin(), offsets.end());
+    return nudges;
+  };
+  out.begin = [=](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+    return subject.begin(parameters, and_offsets(nudges));
+  };
+  if (subject.begun_by)
+    out.begun_by = [=](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+      return subject.begun_by(parameters, and_offsets(nudges));
+    };
+  if (subject.through_events)
+    out.through_events = [=](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node) {
+      return subject.through_events(parameters, and_offsets(nudges), node);
+    };
+  return out;
+}
+
+Uncertainty uncertainty_of(const GradientSubject& subject, const std::vector<std::string>& of,
+                           const InputErrors& errors, const Draws& draws) {
   Uncertainty out;
-  out.table = differentiate(subject, of, words, /*check=*/false);
-  std::vector<Nudged> all = start;
-  all.insert(all.end(), parameters.begin(), parameters.end());
-  if (all.size() != out.table.columns.size())
-    throw GradientRefused("a start or a parameter has two deviations; give each one");
+  out.errors = errors;
+  out.table = differentiate(subject, of, errors.names, /*check=*/false);
   if (!out.table.failure.empty()) return out;
-  out.deviations.resize(Eigen::Index(all.size()));
-  std::transform(all.begin(), all.end(), out.deviations.begin(), [](const Nudged& each) { return each.deviation; });
-  const Eigen::MatrixXd scaled = out.table.derivatives * out.deviations.asDiagonal();
-  out.covariance = scaled * scaled.transpose();
-  if (draws.count > 0) out.sample = sample(subject, out.table, all, draws);
+  if (out.table.columns != errors.names)
+    throw GradientRefused("errors of starts come first, and then those of parameters, each once");
+  out.covariance = out.table.derivatives * errors.covariance * out.table.derivatives.transpose();
+  if (draws.count > 0) out.sample = sample(subject, out.table, errors, draws);
   return out;
 }
 
@@ -122,6 +198,7 @@ std::string text_of(const Uncertainty& u) {
   if (u.sample) out += fmt::format("  {:>12}", "of draws");
   std::vector<std::size_t> widths;
   for (const std::string& column : table.columns) {
+    if (!u.errors.are_independent) break;  // there are no shares of errors that go together
     widths.push_back(std::max<std::size_t>(8, column.size() + 5));
     out += fmt::format("  {:>{}}", "% by " + column, widths.back());
   }
@@ -162,7 +239,7 @@ std::string json_of(const Uncertainty& u) {
     for (Eigen::Index i = 0; i < a.rows(); ++i) rows.push_back(vector(a.row(i)));
     return rows;
   };
-  out["deviations"] = vector(u.deviations);
+  out["deviations"] = vector(u.errors.covariance.diagonal().cwiseSqrt());
   out["covariance"] = matrix(u.covariance);
   if (u.sample)
     out["draws"] = {{"runs", u.sample->runs},

@@ -1,14 +1,17 @@
 #pragma once
-/// What errors of the start and of the parameters become along a run: with independent normal errors of deviations
-/// sigma_j, in the linear approximation,
+/// What errors of the start and of the parameters become along a run: with normal errors of covariance C, in the linear
+/// approximation,
 ///
-///     Sigma = J diag(sigma^2) J^T,    J the exact derivatives;
+///     Sigma = J C J^T,    J the exact derivatives;
 ///
-/// and what they become without it, of runs from starts that are drawn.
+/// and what they become without it, of runs from starts that are drawn. C is diagonal, of independent errors, or what a
+/// fit found (fit.hpp).
 ///
-///     const Uncertainty end = uncertainty_of(subject, {"final"}, deviations_of({"initial.momentum=0.01"}), {});
+///     const InputErrors errors = independent_errors(subject, {"initial.momentum=0.01"});
+///     const Uncertainty end = uncertainty_of(subject, {"final"}, errors, {});
 ///
-/// Errors: GradientRefused, one line, for what has no derivative, no such name or no deviation.
+/// Errors: GradientRefused, one line, for what has no derivative, no such name or no deviation; DataError for a file
+/// that no fit has written, or whose data did not tell an unknown.
 
 #include "gradient_table.hpp"
 
@@ -19,13 +22,19 @@
 
 namespace lagroid::app {
 
-/// A start or a parameter, and the standard deviation of its error.
-struct Deviation {
-  std::string name;  ///< initial.NAME or parameters.NAME
-  double size;
+/// Of starts and parameters, each by a name of its own: initial.NAME or parameters.NAME, starts first.
+struct InputErrors {
+  std::vector<std::string> names;
+  Eigen::MatrixXd covariance;
+  bool are_independent = true;
+  std::vector<double> values = {};  ///< what was fitted, in place of what the scene has
 };
-/// Of words NAME=NUMBER.
-std::vector<Deviation> deviations_of(const std::vector<std::string>& words);
+/// Of words NAME=SIGMA, where NAME may be a group: each number of it has that deviation.
+InputErrors independent_errors(const GradientSubject& subject, const std::vector<std::string>& words);
+/// Of what `lagroid fit --json` printed into a file.
+InputErrors fitted_errors(const std::string& file);
+/// The subject from where these errors are about.
+GradientSubject moved_to(const GradientSubject& subject, const InputErrors& errors);
 
 /// How many runs are drawn, and from which stream of numbers.
 struct Draws {
@@ -35,7 +44,7 @@ struct Draws {
 
 struct Uncertainty {
   GradientTable table;
-  Eigen::VectorXd deviations;  ///< of its columns
+  InputErrors errors;          ///< of its columns
   Eigen::MatrixXd covariance;  ///< of its rows
   /// The same of runs that were drawn.
   struct Sample {
@@ -48,7 +57,7 @@ struct Uncertainty {
 };
 
 Uncertainty uncertainty_of(const GradientSubject& subject, const std::vector<std::string>& of,
-                           const std::vector<Deviation>& deviations, const Draws& draws);
+                           const InputErrors& errors, const Draws& draws);
 
 std::string text_of(const Uncertainty& uncertainty);
 std::string json_of(const Uncertainty& uncertainty);

@@ -102,11 +102,10 @@ template <DiscreteSystem Sys> struct StatedInitialValue {
 /// Whether the scene sets nothing of the solver, which solves each step.
 inline bool solved_by_newton(const IntegratorChoice& choice) {
   const IntegratorOptions& o = choice.options;
-  const bool of_unknown_size =
-      (o.mode == TimeMode::adaptive && o.without_root == WithoutRoot::stop) || o.mode == TimeMode::prescribed;
-  return (o.mode == TimeMode::fixed || of_unknown_size) && o.fixed == StepKind::variational &&
-         o.method == StepMethod::newton && o.step.tolerance == 0 &&
-         o.step.max_iterations == IntegratorOptions().step.max_iterations;
+  const bool vary = (o.mode == TimeMode::adaptive && o.without_root == WithoutRoot::stop) ||
+                    o.mode == TimeMode::prescribed || o.mode == TimeMode::controlled;
+  return (o.mode == TimeMode::fixed || vary) && o.fixed == StepKind::variational && o.method == StepMethod::newton &&
+         o.step.tolerance == 0 && o.step.max_iterations == IntegratorOptions().step.max_iterations;
 }
 inline bool by_splitting(const IntegratorChoice& choice) {
   return choice.options.mode == TimeMode::fixed && choice.options.fixed == StepKind::splitting;

@@ -14,6 +14,10 @@ a_program = None
 gallery = {
     "The cheapest way": {
         "plate_ball": [], "unicycle": [], "attitude_control": [], "kepler_boundary": []},
+    "Bounds, obstacles and free time": {
+        "control/swing_up": [], "control/keep_out": [], "control/fastest_stop": [], "control/shortest_way": [],
+        "control/reeds_shepp": [], "control/parallel_parking": [], "control/falling_cat": [], "control/two_link_arm": [],
+        "control/low_thrust": [], "control/low_thrust_coast": [], "control/through_a_gate": [], "control/rolled_ball": []},
     "Orbits": {
         "kepler": ["time.steps=2000", "output.every=4"], "figure_eight": ["output.every=40"],
         "pythagorean": ["output.every=20000"], "kepler_controlled": ["time.steps=800"]},
@@ -36,6 +40,10 @@ def source(name, settings):
     return f"examples/{name}.{'cpp' if settings is a_program else 'toml'}"
 
 
+def picture(name):
+    return name.replace("/", "_") + ".svg"
+
+
 def caption(file):
     """The comment that opens a scene or a program, as one paragraph; of a program up to its first empty line."""
     mark = "//" if file.suffix == ".cpp" else "#"
@@ -55,7 +63,8 @@ def command(name, settings, folder):
     if settings is a_program:
         return [f"build/release/bin/{name}", folder]
     changed = (word for setting in settings for word in ("--set", setting))
-    return ["./lagroid", "run", source(name, settings), *changed, "--out", folder]
+    verb = "control" if name.startswith("control/") else "run"
+    return ["./lagroid", verb, source(name, settings), *changed, "--out", folder]
 
 
 def page():
@@ -68,10 +77,11 @@ def page():
         lines += ["", f"## {subject}"]
         for name, settings in scenes.items():
             file = source(name, settings)
-            lines += ["", f"### {name.replace('_', ' ').capitalize()}", "", caption(root / file),
+            title = name.split("/")[-1].replace("_", " ").capitalize()
+            lines += ["", f"### {title}", "", caption(root / file),
                       f"([{'program' if settings is a_program else 'scene'}](../{file}))", "",
                       f"    {' '.join(command(name, settings, f'out/gallery/{name}'))}", "",
-                      f"![{name}](gallery/{name}.svg)"]
+                      f"![{name}](gallery/{picture(name)})"]
     return "\n".join(lines) + "\n"
 
 
@@ -83,7 +93,7 @@ def draw(program, name, settings, pictures):
         done = subprocess.run([runs, *arguments], cwd=root, capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"gallery: {' '.join(words)}: {done.stderr.strip()}")
-        shutil.copy(pathlib.Path(folder) / "plot.svg", pictures / f"{name}.svg")
+        shutil.copy(pathlib.Path(folder) / "plot.svg", pictures / picture(name))
 
 
 def main():

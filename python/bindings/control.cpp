@@ -100,6 +100,14 @@ void bind_control(py::module_& module) {
       .def_property_readonly(
           "duration", [](const R& r) { return r.times.back(); }, "T, in the units of the problem.")
       .def_property_readonly(
+          "phases",
+          [](const R& r) {
+            py::dict out;
+            for (const auto& each : r.phases) out[py::str(each.name)] = each.duration;
+            return out;
+          },
+          "The durations of the phases by their names, in order; empty where the scene has none.")
+      .def_property_readonly(
           "is_strict_minimum", [](const R& r) { return r.report.is_strict_minimum; },
           "Whether second derivatives say so.")
       .def_property_readonly(

@@ -90,14 +90,17 @@ def gradient(
     *,
     of: Sequence[str] = ("final",),
     wrt: Sequence[str] = ("initial", "parameters"),
+    columns: Optional[Mapping[str, str]] = None,
     set: Optional[Mapping[str, Any]] = None,
     check: bool = False,
 ) -> GradientTable:
     """The derivatives of a scene's run by its start and its parameters, exact, by the program lagroid-gradient
     (docs/gradients.md): `of` what, as "final.position", "node.10.px", "integral.x" or, through the scene's events,
-    "event.floor.1.t", and `wrt` what, as "initial.momentum" or "parameters.strength". `check` compares with extrapolated differences of runs. Raises
+    "event.floor.1.t", and `wrt` what, as "initial.momentum" or "parameters.strength". `columns`: more columns of the run,
+    as {"w1": "M1 / parameters.inertia.0"}. `check` compares with extrapolated differences of runs. Raises
     ProgramError where the program is missing, SceneError where it refuses, SolveError where a step of the run fails."""
-    arguments = ["--of", ",".join(of), "--wrt", ",".join(wrt)] + (["--check"] if check else [])
+    arguments = ["--of", ",".join(of), "--wrt", ",".join(wrt), *repeated("--column", columns)]
+    arguments += ["--check"] if check else []
     found = told_by("gradient", scene, set, arguments)
     if found.get("status") == "failed":
         raise SolveError(found["message"])
@@ -130,22 +133,31 @@ class Uncertainty(NamedTuple):
 
 def uncertainty(
     scene: SceneLike,
-    deviations: Mapping[str, float],
+    deviations: Optional[Mapping[str, float]] = None,
     *,
+    fitted: Optional[Mapping[str, Any]] = None,
     of: Sequence[str] = ("final",),
+    columns: Optional[Mapping[str, str]] = None,
     set: Optional[Mapping[str, Any]] = None,
     draws: int = 0,
     seed: int = 1,
 ) -> Uncertainty:
-    """The covariance of functions of a scene's run where its start and its parameters have independent normal errors,
-    `deviations` = {"initial.momentum": 0.01, "parameters.length": 0.02}, by exact derivatives in the linear
-    approximation, and with `draws` that of so many runs from starts drawn at random (docs/gradients.md). Raises what
-    `gradient` raises."""
-    errors = ",".join(f"{name}={size!r}" for name, size in deviations.items())
-    arguments = ["--of", ",".join(of), "--deviations", errors]
-    if draws:
-        arguments += ["--draws", str(draws), "--seed", str(seed)]
-    found = told_by("gradient", scene, set, arguments)
+    """The covariance of functions of a scene's run where its start and its parameters have normal errors, independent
+    ones of `deviations` = {"initial.momentum": 0.01, "parameters.length": 0.02}, or those of what `fit` has `fitted`, from
+    there; by exact derivatives in the linear approximation, and with `draws` that of so many runs from starts drawn at
+    random (docs/gradients.md). Raises what `gradient` raises, and ValueError unless one of both is given."""
+    if (deviations is None) == (fitted is None):
+        raise ValueError("give deviations, or what was fitted")
+    arguments = ["--of", ",".join(of), *repeated("--column", columns)]
+    drawn_at_random = ["--draws", str(draws), "--seed", str(seed)] if draws else []
+    with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+        if deviations is not None:
+            arguments += ["--deviations", ",".join(f"{name}={size!r}" for name, size in deviations.items())]
+        else:
+            json.dump(fitted, file)
+            file.flush()
+            arguments += ["--covariance", file.name]
+        found = told_by("gradient", scene, set, arguments + drawn_at_random)
     if found.get("status") == "failed":
         raise SolveError(found["message"])
     drawn = found.get("draws")
@@ -167,6 +179,8 @@ def fit(
     wrt: Sequence[str],
     *,
     of: Sequence[str] = (),
+    columns: Optional[Mapping[str, str]] = None,
+    combinations: Optional[Mapping[str, str]] = None,
     sigma: Optional[Mapping[str, float]] = None,
     bounds: Optional[Mapping[str, tuple[float, float]]] = None,
     huber: float = 0.0,
@@ -179,12 +193,13 @@ def fit(
     "unknowns", "covariance", "undetermined" and more.
 
     `data`: CSV files, one for each run, with the columns `t` and others of the run; empty fields are gaps. `wrt`: what
-    is fitted, as "initial.momentum" or "parameters.length". `of`: the columns that are used, all by default. `sigma`:
-    deviations of their errors, 1 by default. `bounds`: of what is fitted. `huber`: beyond so many sigma a residual
+    is fitted, as "initial.momentum" or "parameters.length". `of`: the columns that are used, all by default. `columns`:
+    more columns of the run, as {"w1": "M1 / parameters.inertia.0"}, and `combinations` functions of unknowns that are
+    to be told, as {"ratio": "parameters.inertia.1 / parameters.inertia.0"}. `sigma`: deviations of their errors, 1 by default. `bounds`: of what is fitted. `huber`: beyond so many sigma a residual
     weighs by its size. `starts`: guesses, others than the scene's being drawn around it by `spread`. Raises what
     `gradient` raises, and SolveError where no run comes to its end."""
     files = [os.fspath(each) for each in data]
-    arguments = [*files, "--wrt", ",".join(wrt)]
+    arguments = [*files, "--wrt", ",".join(wrt), *repeated("--column", columns), *repeated("--combination", combinations)]
     if of:
         arguments += ["--of", ",".join(of)]
     if sigma:
@@ -199,6 +214,11 @@ def fit(
     if found["status"] == "failed":
         raise SolveError(found["message"])
     return found
+
+
+def repeated(option: str, texts: Optional[Mapping[str, str]]) -> list[str]:
+    """An option for each of some texts with names."""
+    return [word for name, text in (texts or {}).items() for word in (option, f"{name}={text}")]
 
 
 def told_by(

@@ -170,6 +170,18 @@ class Control(unittest.TestCase):
         self.assertTrue(np.all(np.hypot(*steps) <= np.diff(way.times) * (1 + 1e-9)))
         self.assertEqual(json.loads(way.summary)["cost"], way.cost)
 
+    def test_phases(self) -> None:
+        """Through a gate and on to a circle, each in its own time."""
+        way = lagroid.control(EXAMPLES / "control/through_a_gate.toml", set={"solver.starts": 2})
+        self.assertTrue(way.converged, way.message)
+        self.assertEqual(list(way.phases), ["to the gate", "to the circle"])
+        self.assertAlmostEqual(sum(way.phases.values()), way.duration, places=12)
+        x, y, angle = way.states[60]
+        self.assertAlmostEqual(x, 2, places=9)
+        self.assertAlmostEqual(angle, 0, places=9)
+        self.assertAlmostEqual(np.hypot(way.states[-1][0] - 6, way.states[-1][1] - 3), 1, places=9)
+        self.assertEqual(lagroid.control(EXAMPLES / "control/shortest_way.toml", set={"solver.starts": 1}).phases, {})
+
     def test_no_way(self) -> None:
         """A mass that cannot stop in time."""
         late = lagroid.control(

@@ -116,6 +116,26 @@ class Studies(unittest.TestCase):
         assert found.drawn_mean is not None
         self.assertEqual(found.drawn_mean.tolist(), [1.4])
 
+    def test_uncertainty_of_what_was_fitted_gives_the_program_the_fit(self) -> None:
+        fitted = {"unknowns": [{"name": "initial.px", "value": 1.5, "deviation": 0.01}], "covariance": [[1e-4]]}
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "lagroid-gradient"
+            program.write_text(
+                '#!/bin/sh\n[ "$3 $4 $5 $6 $7" = "--of final.r --column r=sqrt(x^2 + y^2) --covariance" ] || exit 1\n'
+                'grep -q initial.px "$8" || exit 1\n'
+                'echo \'{"of": ["final.r"], "by": ["initial.px"], "values": [1.5], "derivatives": [[2]],'
+                ' "deviations": [0.01], "covariance": [[4e-4]]}\'\n'
+            )
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
+                found = lagroid.uncertainty(
+                    EXAMPLES / "kepler.toml", fitted=fitted, of=["final.r"], columns={"r": "sqrt(x^2 + y^2)"}
+                )
+        self.assertEqual(found.covariance.tolist(), [[4e-4]])
+        self.assertIsNone(found.drawn_mean)
+        with self.assertRaises(ValueError):
+            lagroid.uncertainty(EXAMPLES / "kepler.toml")
+
     def test_fit_hands_over_to_the_same_program(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             program = Path(folder) / "lagroid-gradient"

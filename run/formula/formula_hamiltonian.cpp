@@ -205,15 +205,18 @@ void FormulaHamiltonian::read_generating_function(const FormulaTexts& texts, Nod
       for (std::size_t i = 0; i < 2 * n; ++i) wanted.push_back(graph_.derivative(f, i));
   }
   generating_ = FormulaProgram(graph_, wanted);
-  std::vector<Node> energy_slopes;
+  std::vector<Node> energy_slopes, velocity_slopes;
   std::vector<Node> slopes(wanted.begin() + 1, wanted.begin() + 1 + long(2 * n));
   wanted.clear();
   for (std::size_t a = 0; a < texts.parameters.size(); ++a) {
     energy_slopes.push_back(graph_.derivative(energy, variable_of_parameter(a)));
+    for (std::size_t i = 0; i < n; ++i)
+      velocity_slopes.push_back(graph_.derivative(graph_.derivative(energy, n + i), variable_of_parameter(a)));
     for (std::vector<Node>* each : {&slopes, &far_p, &far_q})
       for (const Node f : *each) wanted.push_back(graph_.derivative(f, variable_of_parameter(a)));
   }
   energy_by_parameters_ = FormulaProgram(graph_, energy_slopes);
+  velocity_by_parameters_ = FormulaProgram(graph_, velocity_slopes);
   by_parameters_ = FormulaProgram(graph_, wanted);
   arguments_.resize(after + 2 * n + 1);
 }
@@ -244,6 +247,20 @@ void FormulaHamiltonian::energy_slope(double t, const double* q, const double* p
   hamiltonian(t, q, p, numbers.data());
   std::copy_n(numbers.begin() + 1, 2 * n, out);
   energy_by_parameters_.evaluate(at(t, q, p), out + 2 * n, scratch_);
+}
+
+// v = H_p.
+Eigen::MatrixXd FormulaHamiltonian::velocity_slope(double t, const double* q, const double* p, const double*) const {
+  const int n = int(size()), parameters = int(FormulaSystem::parameters().size());
+  std::vector<double> numbers(SecondOrder::count(2 * n));
+  hamiltonian(t, q, p, numbers.data());
+  const SecondOrder energy{numbers.data(), 2 * n};
+  Eigen::MatrixXd by_parameters(n, parameters), out(n, 2 * n + parameters);
+  velocity_by_parameters_.evaluate(at(t, q, p), by_parameters.data(), scratch_);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < 2 * n; ++j) out(i, j) = energy.second(n + i, j);
+  out.rightCols(parameters) = by_parameters;
+  return out;
 }
 
 }  // namespace lagroid

@@ -45,6 +45,7 @@ class FormulaHamiltonian final : public SizedHamiltonian, public FormulaSystem {
 
   std::unique_ptr<FormulaSystem> clone() const override { return std::make_unique<FormulaHamiltonian>(*this); }
   void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const override;
+  Eigen::MatrixXd velocity_slope(double t, const double* q, const double* p, const double* v) const override;
 
   void hamiltonian(double t, const double* q, const double* p, double* out) const override;
   void generating(double t, const double* q, const double* p, const double* sigma, const double* far, double h,
@@ -59,7 +60,7 @@ class FormulaHamiltonian final : public SizedHamiltonian, public FormulaSystem {
                                      double h) const;
   bool depends_on_time_;
 
-  FormulaProgram hamiltonian_, energy_by_parameters_, generating_, by_parameters_;
+  FormulaProgram hamiltonian_, energy_by_parameters_, velocity_by_parameters_, generating_, by_parameters_;
   mutable std::vector<double> arguments_;  ///< the variables, then sigma, p1 and h
 };
 

@@ -1,5 +1,8 @@
 #include <lagroid/run/formula/formula_lagrangian.hpp>
 
+#include <lagroid/core/derivatives/second_order.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
+
 #include <fmt/format.h>
 
 namespace lagroid {
@@ -57,6 +60,29 @@ void FormulaLagrangian::energy_slope(double t, const double* q, const double*, c
     out[n + i] = v[i];
   }
   for (std::size_t a = 0; a < parameters().size(); ++a) out[2 * n + a] = -varied[a * each];
+}
+
+Eigen::MatrixXd FormulaLagrangian::momentum_slope(double t, const double* q, const double* v) const {
+  const int n = int(size()), each = 1 + 2 * n + (sizes().forced ? n : 0);
+  std::vector<double> numbers(lagrangian_numbers()), varied(parameter_numbers());
+  lagrangian(t, q, v, numbers.data());
+  by_parameters(t, q, v, varied.data());
+  const SecondOrder l{numbers.data(), 2 * n};
+  Eigen::MatrixXd out(n, 2 * n + int(parameters().size()));
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < 2 * n; ++j) out(i, j) = l.second(n + i, j);
+    for (int a = 0; a < int(parameters().size()); ++a) out(i, 2 * n + a) = varied[std::size_t(a * each + 1 + n + i)];
+  }
+  return out;
+}
+
+// p = l_v(q, v): l_vv dv = dp - l_vq dq - l_va da.
+Eigen::MatrixXd FormulaLagrangian::velocity_slope(double t, const double* q, const double*, const double* v) const {
+  const Eigen::Index n = Eigen::Index(size());
+  Eigen::MatrixXd out = -momentum_slope(t, q, v);
+  const Eigen::MatrixXd by_velocity = -out.middleCols(n, n);
+  out.middleCols(n, n).setIdentity();
+  return solve_regular(by_velocity, out);
 }
 
 }  // namespace lagroid

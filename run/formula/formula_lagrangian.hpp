@@ -31,6 +31,9 @@ class FormulaLagrangian final : public SizedLagrangian, public FormulaSystem {
 
   std::unique_ptr<FormulaSystem> clone() const override { return std::make_unique<FormulaLagrangian>(*this); }
   void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const override;
+  Eigen::MatrixXd velocity_slope(double t, const double* q, const double* p, const double* v) const override;
+  /// The derivatives of l_v by q, v and the parameters, a row for each component.
+  Eigen::MatrixXd momentum_slope(double t, const double* q, const double* v) const;
 
   void lagrangian(double t, const double* q, const double* v, double* out) const override;
   void constraint(const double* q, double* out) const override { FormulaSystem::constraint(q, out); }

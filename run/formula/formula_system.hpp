@@ -81,6 +81,8 @@ class FormulaSystem {
   virtual std::unique_ptr<FormulaSystem> clone() const = 0;
   /// The derivatives of the energy by q, p and the parameters, at a momentum of which v is the velocity.
   virtual void energy_slope(double t, const double* q, const double* p, const double* v, double* out) const = 0;
+  /// The derivatives of the velocity v of a momentum by q, p and the parameters, a row for each component.
+  virtual Eigen::MatrixXd velocity_slope(double t, const double* q, const double* p, const double* v) const = 0;
   /// Of each symmetry the derivatives of <p, xi> by q, p and the parameters.
   void momentum_slopes(const double* q, const double* p, double* out) const;
 

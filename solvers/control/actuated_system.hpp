@@ -13,12 +13,13 @@
 ///     };
 ///
 /// Requires a system known for every step size (StepDependent), `force` and `running_cost` as const templates on the
-/// scalar, and no object constraints. A force is a covector in A*_qG, in the basis of the momentum. Discrete forces of
-/// the system's own act too, and nonholonomic constraints hold: their multipliers follow the controls, unbounded, and
-/// momenta are those before the reaction, so that their components along the annihilator should be free at both ends
-/// (`free_start`, `free_end`); where these are prescribed, the order in h is one, elsewhere two. Other arrow
-/// constraints do not compile. `running_cost` is taken at the states (q, mu) of both ends. Derivatives are third ones
-/// of L, exact.
+/// scalar, and a start that satisfies object constraints. A force is a covector in A*_qG, in the basis of the momentum.
+/// Discrete forces of the system's own act too, and nonholonomic constraints hold: their multipliers follow the
+/// controls, unbounded, and momenta are those before the reaction, so that their components along the annihilator
+/// should be free at both ends (`free_start`, `free_end`); where these are prescribed, the order in h is one, elsewhere
+/// two. Other arrow constraints do not compile. Object constraints C(q_k) = 0 hold at every node, their multipliers are
+/// controls behind these, and momenta are those before their reaction, too: at an end the component along dC is to be
+/// free. `running_cost` is taken at the states (q, mu) of both ends. Derivatives are third ones of L, exact.
 ///
 /// Ober-Bloebaum, Junge, Marsden, ESAIM COCV 17 (2011), section 3; [G] Def. 3.3.
 
@@ -36,15 +37,17 @@ namespace lagroid {
 template <class Sys> using ActuatedGroupoid = Product<typename Sys::GroupoidType, Pair<Sys::dimension>>;
 
 template <class Derived, class Sys, int ControlCount, int Inequalities = 0>
-struct ActuatedSystem : ControlSystem<Derived, ActuatedGroupoid<Sys>, ControlCount + Sys::arrow_constraints,
-                                      2 * Sys::dimension + Sys::arrow_constraints, Inequalities> {
+struct ActuatedSystem
+    : ControlSystem<Derived, ActuatedGroupoid<Sys>, ControlCount + Sys::arrow_constraints + Sys::object_constraints,
+                    2 * Sys::dimension + Sys::arrow_constraints, Inequalities> {
   static_assert(StepDependent<Sys> && !TimeDependent<Sys>, "the system writes lagrangian(g, step) (see StepDependent)");
-  static_assert(Sys::object_constraints == 0, "object constraints have multipliers on objects, which are not controls");
   static_assert(Sys::arrow_constraints == 0 || Nonholonomic<Sys>, "arrow constraints are nonholonomic ones");
   using Motion = typename Sys::GroupoidType;
   static constexpr int rank = Sys::dimension;
   static constexpr int reactions = Sys::arrow_constraints;
-  static constexpr int all_controls = ControlCount + reactions;
+  static constexpr int ties = Sys::object_constraints;
+  static constexpr int node_equalities = ties;
+  static constexpr int all_controls = ControlCount + reactions + ties;
   template <class S> using MotionArrow = ArrowOf<Motion, S>;
   template <class S> using State = lagroid::State<Motion, S>;
   template <class S> using AllControls = Vector<S, all_controls>;
@@ -61,6 +64,70 @@ struct ActuatedSystem : ControlSystem<Derived, ActuatedGroupoid<Sys>, ControlCou
 
   template <class A, class S>
   Vector<S, 2 * rank + reactions> constraint(const A& g, const AllControls<S>& all, const S& h) const {
+    Vector<S, 2 * rank + reactions> out = without_slopes(g, all, h);
+    for (int i = 0; i < rank; ++i) {
+      Vector<S, rank> none = Vector<S, rank>::Constant(S(0.0));
+      Vector<S, rank> one = none;
+      one(i) = S(1.0);
+      out(i) += slope(std::get<0>(g), h, one, none);
+      out(rank + i) += slope(std::get<0>(g), h, none, one);
+    }
+    return out;
+  }
+  /// <lambda, constraint>: all derivatives of L that are in it at once, along lambda.
+  template <class A, class S>
+  S weighted_constraint(const A& g, const AllControls<S>& all, const S& h, const double* lambda) const {
+    const Vector<S, 2 * rank + reactions> rest = without_slopes(g, all, h);
+    Vector<S, rank> source;
+    Vector<S, rank> target;
+    S sum = rest(0) * lambda[0];
+    for (int i = 1; i < 2 * rank + reactions; ++i) sum += rest(i) * lambda[i];
+    for (int i = 0; i < rank; ++i) {
+      source(i) = S(lambda[i]);
+      target(i) = S(lambda[rank + i]);
+    }
+    return sum + slope(std::get<0>(g), h, source, target);
+  }
+  template <class S, class Q>
+  Vector<S, ties> node_constraint(const std::tuple<Q, Vector<S, rank>>& state) const requires(ties > 0) {
+    return system.object_constraint(std::get<0>(state));
+  }
+
+  /// Gives the nodes between the ends the momenta with which the arrows leave and reach them, in the mean: a trajectory
+  /// to start from that lacks nothing but its controls.
+  void settle(ControlTrajectory<Derived>& path) const {
+    using Momentum = Vector<double, rank>;
+    const Momentum none = Momentum::Zero();
+    for (std::size_t k = 1; k < path.arrows.size(); ++k) {
+      auto& [before, reached] = path.arrows[k - 1];
+      auto& [after, left] = path.arrows[k];
+      for (int i = 0; i < rank; ++i)
+        reached.target(i) = 0.5 * (slope(before, path.step(long(k) - 1), none, Momentum(Momentum::Unit(i))) -
+                                   slope(after, path.step(long(k)), Momentum(Momentum::Unit(i)), none));
+      left.source = reached.target;
+    }
+  }
+
+ private:
+  const Derived& self() const { return static_cast<const Derived&>(*this); }
+
+  /// d<lambda, C>/dv_i of C(q) at the source of tau(v)^{-1} g, at v = 0.
+  template <class S> S pull(const MotionArrow<S>& g, const AllControls<S>& all, int i) const {
+    using D = Dual<S>;
+    Vector<D, rank> still;
+    for (int j = 0; j < rank; ++j) still(j) = D(S(0.0), S(0.0));
+    Vector<D, rank> moved = still;
+    moved(i).derivative = S(1.0);
+    const auto displaced = system.groupoid.translate(moved, system.groupoid.template cast<D>(g), still);
+    const Vector<D, ties> c = system.object_constraint(system.groupoid.source(displaced));
+    S sum(0.0);
+    for (int a = 0; a < ties; ++a) sum += c(a).derivative * all(ControlCount + reactions + a);
+    return sum;
+  }
+
+  /// The equations without the derivatives of L.
+  template <class A, class S>
+  Vector<S, 2 * rank + reactions> without_slopes(const A& g, const AllControls<S>& all, const S& h) const {
     const auto& [arrow, momentum] = g;
     const Vector<S, ControlCount> u = part<0, ControlCount>(all);
     const auto source = system.groupoid.source(arrow);
@@ -69,8 +136,8 @@ struct ActuatedSystem : ControlSystem<Derived, ActuatedGroupoid<Sys>, ControlCou
     const S half = h * 0.5;
     Vector<S, 2 * rank + reactions> out;
     for (int i = 0; i < rank; ++i) {
-      out(i) = momentum.source(i) + half * at_source(i) + slope<End::source, S>(arrow, h, i);
-      out(rank + i) = slope<End::target, S>(arrow, h, i) + half * at_target(i) - momentum.target(i);
+      out(i) = momentum.source(i) + half * at_source(i);
+      out(rank + i) = half * at_target(i) - momentum.target(i);
     }
     if constexpr (Forced<Sys>) {
       const Forces<S, rank> own = system.forces(arrow, h);
@@ -87,22 +154,22 @@ struct ActuatedSystem : ControlSystem<Derived, ActuatedGroupoid<Sys>, ControlCou
         out(2 * rank + a) = phi(a);
       }
     }
+    if constexpr (ties > 0)
+      for (int i = 0; i < rank; ++i) out(i) += pull(arrow, all, i);
     return out;
   }
-
- private:
-  const Derived& self() const { return static_cast<const Derived&>(*this); }
-
-  /// dL/dv_i of L(tau(v)^{-1} g), or of L(g tau(v)), at v = 0.
-  template <End Which, class S> S slope(const MotionArrow<S>& g, const S& h, int i) const {
+  /// d/de L(tau(e a)^{-1} g tau(e b)) at e = 0.
+  template <class S>
+  S slope(const MotionArrow<S>& g, const S& h, const Vector<S, rank>& a, const Vector<S, rank>& b) const {
     using D = Dual<S>;
-    Vector<D, rank> still;
-    for (int j = 0; j < rank; ++j) still(j) = D(S(0.0), S(0.0));
-    Vector<D, rank> moved = still;
-    moved(i).derivative = S(1.0);
-    const auto there = system.groupoid.template cast<D>(g);
-    const MotionArrow<D> displaced = Which == End::source ? system.groupoid.translate(moved, there, still)
-                                                          : system.groupoid.translate(still, there, moved);
+    Vector<D, rank> at_source;
+    Vector<D, rank> at_target;
+    for (int i = 0; i < rank; ++i) {
+      at_source(i) = D(S(0.0), a(i));
+      at_target(i) = D(S(0.0), b(i));
+    }
+    const MotionArrow<D> displaced =
+        system.groupoid.translate(at_source, system.groupoid.template cast<D>(g), at_target);
     return D(system.lagrangian(displaced, D(h, S(0.0)))).derivative;
   }
 };

@@ -117,6 +117,8 @@ template <class Sys> class ControlLoop {
  private:
   static const ControlLoopOptions& checked(const ControlLoopOptions& options, const ControlTask<Sys>& task,
                                            const ControlTrajectory<Sys>& plan) {
+    if (!task.phases.empty())
+      throw std::invalid_argument("a control loop looks ahead in one phase: its task has no list of them");
     if (task.duration_is_free)
       throw std::invalid_argument("a control loop looks ahead for a time that is given: its duration is not free");
     for (const auto& ends : {task.free_start, task.free_end})

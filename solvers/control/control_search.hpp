@@ -1,7 +1,7 @@
 #pragma once
 /// Optimal control from many starts: one start finds one local minimum, and which one is chance. The first start is the
 /// straight trajectory, the second what the motion does by itself, bent toward the end; the others wind about the loops
-/// of the groupoid and are bent by sine modes.
+/// of the groupoid and are bent by sine modes, with the momenta of such a motion (`settle`) where there are any.
 ///
 ///     const ControlSearch<DubinsCar> found = search_control(task, 100, {.starts = 12});
 ///     for (const auto& each : found.minima) std::cout << each.report.cost << '\n';  // cheapest first
@@ -58,10 +58,15 @@ std::optional<ControlTrajectory<Sys>> drifting_trajectory(const ControlTask<Sys>
     using J = Jet<double, n>;
     const G& groupoid = task.system.groupoid;
     ControlTrajectory<Sys> path = straight_trajectory(task, stages);
+    stages = long(path.arrows.size());
+    const std::vector<ControlPhase<Sys>> phases = phases_of(task, stages);
+    std::size_t phase = 0;
+    long of_phase = 0;  // how many of its stages are done
     ArrowOf<G> reached = groupoid.unit(groupoid.source(task.boundary));
     std::vector<ArrowOf<G>> nodes;
     AlgebroidVector<G> v = AlgebroidVector<G>::Zero();
-    for (long k = 0; k < stages; ++k) {
+    for (long k = 0; k < stages; ++k, ++of_phase) {
+      if (of_phase == path.phases[phase].stages) ++phase, of_phase = 0;
       ArrowOf<G> g = groupoid.tau(groupoid.target(reached), v);
       const auto& u = path.controls[std::size_t(k)];
       const Vector<J, Sys::controls> control = u.template cast<J>();
@@ -70,8 +75,8 @@ std::optional<ControlTrajectory<Sys>> drifting_trajectory(const ControlTask<Sys>
         Vector<J, n> b;
         for (int j = 0; j < n; ++j) b(j) = J::variable(0, j);
         const Vector<J, n> zero = Vector<J, n>::Constant(J(0.0));
-        const Vector<J, n> phi =
-            task.system.constraint(groupoid.translate(zero, groupoid.template cast<J>(g), b), control, J(path.step));
+        const Vector<J, n> phi = phases[phase].system.constraint(
+            groupoid.translate(zero, groupoid.template cast<J>(g), b), control, J(path.phases[phase].step));
         Matrix<double, n, n> slope;
         Vector<double, n> value;
         for (int j = 0; j < n; ++j) {
@@ -112,6 +117,7 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
   if (index == 1)
     if (const auto drifting = drifting_trajectory(task, stages)) return *drifting;
   ControlTrajectory<Sys> path = straight_trajectory(task, stages);
+  stages = long(path.arrows.size());
   if (index == 0) return path;
   const G& groupoid = task.system.groupoid;
   std::seed_seq sequence{std::uint32_t(options.seed), std::uint32_t(options.seed >> 32), std::uint32_t(index)};
@@ -147,7 +153,11 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
     path.arrows[std::size_t(k)] = groupoid.project(groupoid.compose(groupoid.inverse(before), here));
     before = here;
   }
-  if (task.duration_is_free) path.step *= std::exp2(std::uniform_real_distribution<double>(-1, 1)(generator));
+  const std::vector<ControlPhase<Sys>> phases = phases_of(task, stages);
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    if (phases[p].duration_is_free)
+      path.phases[p].step *= std::exp2(std::uniform_real_distribution<double>(-1, 1)(generator));
+  if constexpr (requires { task.system.settle(path); }) task.system.settle(path);
   return path;
 }
 
@@ -156,7 +166,8 @@ template <class Sys>
 using ControlSolver =
     std::function<ControlSolution<Sys>(const ControlTask<Sys>&, ControlTrajectory<Sys>, const ControlOptions&)>;
 
-/// Before each start `keep_going(start)` decides whether it is made.
+/// Of a task in phases, their stages count and not `stages`. Before each start `keep_going(start)` decides whether it
+/// is made.
 template <class Sys>
 ControlSearch<Sys> search_control(
     const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {},

@@ -21,9 +21,14 @@
 /// mechanics and optimal control.
 
 #include <lagroid/core/groupoid.hpp>
+#include <lagroid/solvers/control/node_condition.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace lagroid {
@@ -37,6 +42,16 @@ namespace lagroid {
 /// and may write conditions that the last object is to satisfy, with `static constexpr int end_equalities`:
 ///
 ///     Vector<S, end_equalities> end_constraint(const Object<S>& q)
+///
+/// or that every object after the first is to satisfy, with `static constexpr int node_equalities`; of the last one,
+/// where what they restrict is free:
+///
+///     Vector<S, node_equalities> node_constraint(const Object<S>& q)
+///
+/// A task in several phases, one after another, gives each its duration, bounds and parameters, and what is to hold
+/// where it ends:
+///
+///     task.phases = {{.stages = 40, .duration_is_free = true, .end_condition = gate}, {.stages = 60}};
 template <class Derived, class G, int ControlCount, int Equalities, int Inequalities = 0> struct ControlSystem {
   using GroupoidType = G;
   static constexpr int dimension = G::dimension;
@@ -44,6 +59,7 @@ template <class Derived, class G, int ControlCount, int Equalities, int Inequali
   static constexpr int equalities = Equalities;
   static constexpr int inequalities = Inequalities;
   static constexpr int end_equalities = 0;
+  static constexpr int node_equalities = 0;
   template <class S> using Arrow = typename G::template Arrow<S>;
   template <class S> using Object = typename G::template Object<S>;
   template <class S> using Controls = Vector<S, ControlCount>;
@@ -51,16 +67,58 @@ template <class Derived, class G, int ControlCount, int Equalities, int Inequali
   [[no_unique_address]] G groupoid;
 };
 
-/// The arrows and controls of N stages, each of the same duration.
-template <class Sys> struct ControlTrajectory {
-  std::vector<ArrowOf<typename Sys::GroupoidType>> arrows;
-  std::vector<Vector<double, Sys::controls>> controls;
-  double step = 0;  ///< h
-
-  double duration() const { return step * double(arrows.size()); }
+/// So many stages, each of the same duration h.
+struct PhaseSteps {
+  long stages = 0;
+  double step = 0;
 };
 
-/// What is to be solved: a system between two ends.
+/// The arrows and controls of N stages, phase by phase.
+template <class Sys> struct ControlTrajectory {
+  using A = ArrowOf<typename Sys::GroupoidType>;
+  std::vector<A> arrows;
+  std::vector<Vector<double, Sys::controls>> controls;
+  std::vector<PhaseSteps> phases;
+  /// From the first object of the task's boundary to the first node, where that is free; none: it begins there.
+  std::optional<A> start = {};
+
+  /// h of a stage.
+  double step(long stage = 0) const {
+    std::size_t p = 0;
+    while (p + 1 < phases.size() && stage >= phases[p].stages) stage -= phases[p++].stages;
+    return phases[p].step;
+  }
+  /// Of a node, after the first.
+  double time(long node) const {
+    double sum = 0;
+    for (const PhaseSteps& each : phases) {
+      sum += double(std::min(node, each.stages)) * each.step;
+      node -= std::min(node, each.stages);
+    }
+    return sum;
+  }
+  double duration() const { return time(long(arrows.size())); }
+};
+
+/// A part of a trajectory with a duration, bounds and parameters of its own. The next begins at the node where it ends.
+template <class Sys> struct ControlPhase {
+  using G = typename Sys::GroupoidType;
+
+  Sys system = {};  ///< its parameters hold in this phase: costs, obstacles
+  long stages = 50;
+  double duration = 1;  ///< the first guess of it where it is free
+  bool duration_is_free = false;
+  double shortest = 0;  ///< of its duration, where that is free
+  double longest = HUGE_VAL;
+  /// Of controls; where both are the same number, the control is fixed there.
+  Vector<double, Sys::controls> lower = Vector<double, Sys::controls>::Constant(-HUGE_VAL);
+  Vector<double, Sys::controls> upper = Vector<double, Sys::controls>::Constant(HUGE_VAL);
+  bool inequalities_hold = true;                            ///< those of the system
+  std::shared_ptr<const NodeCondition<G>> end_condition{};  ///< of its last node
+  std::optional<ArrowOf<G>> guess{};  ///< from the first object of the boundary to about where it ends
+};
+
+/// What is to be solved: a system between two ends, in one phase or several.
 template <class Sys> struct ControlTask {
   using G = typename Sys::GroupoidType;
   static constexpr double none = std::numeric_limits<double>::infinity();
@@ -75,30 +133,76 @@ template <class Sys> struct ControlTask {
   std::array<bool, std::size_t(Sys::dimension)> free_end{};
   Vector<double, Sys::controls> lower = all(-none);
   Vector<double, Sys::controls> upper = all(none);
+  /// What an end is to satisfy that is free in part (node_condition.hpp).
+  std::shared_ptr<const NodeCondition<G>> start_condition{};
+  std::shared_ptr<const NodeCondition<G>> end_condition{};
+  /// One after another, in place of the system, duration and bounds above; none: these, in one phase.
+  std::vector<ControlPhase<Sys>> phases{};
 };
 
-/// Arrows tau(q, v / N) after one another, v the retraction's inverse of the boundary arrow, with controls at rest or
-/// in the middle of their bounds: a trajectory to start from. The last arrow is what remains.
-template <class Sys> ControlTrajectory<Sys> straight_trajectory(const ControlTask<Sys>& task, long stages) {
-  const auto& groupoid = task.system.groupoid;
-  using G = typename Sys::GroupoidType;
-  const AlgebroidVector<G> whole = groupoid.tau_inverse(task.boundary);
-  const AlgebroidVector<G> part = whole / double(stages);
-  ControlTrajectory<Sys> out;
-  out.step = task.duration / double(stages);
-  ArrowOf<G> product = groupoid.unit(groupoid.source(task.boundary));
-  for (long k = 0; k + 1 < stages; ++k) {
-    out.arrows.push_back(groupoid.tau(groupoid.target(product), part));
-    product = groupoid.compose(product, out.arrows.back());
-  }
-  out.arrows.push_back(groupoid.compose(groupoid.inverse(product), task.boundary));
+/// The phases of a task; where it names none, one of so many stages.
+template <class Sys> std::vector<ControlPhase<Sys>> phases_of(const ControlTask<Sys>& task, long stages) {
+  if (!task.phases.empty()) return task.phases;
+  return {{.system = task.system,
+           .stages = stages,
+           .duration = task.duration,
+           .duration_is_free = task.duration_is_free,
+           .lower = task.lower,
+           .upper = task.upper}};
+}
+
+/// At rest, or in the middle of the bounds.
+template <class Sys> Vector<double, Sys::controls> resting_control(const ControlPhase<Sys>& phase) {
   Vector<double, Sys::controls> control;
-  for (int i = 0; i < Sys::controls; ++i)
-    control(i) = std::isfinite(task.lower(i)) && std::isfinite(task.upper(i)) ? 0.5 * (task.lower(i) + task.upper(i))
-                 : std::isfinite(task.lower(i))                               ? std::max(0.0, task.lower(i) + 1)
-                 : std::isfinite(task.upper(i))                               ? std::min(0.0, task.upper(i) - 1)
-                                                                              : 0.0;
-  out.controls.assign(std::size_t(stages), control);
+  for (int i = 0; i < Sys::controls; ++i) {
+    const double lower = phase.lower(i);
+    const double upper = phase.upper(i);
+    control(i) = std::isfinite(lower) && std::isfinite(upper) ? 0.5 * (lower + upper)
+                 : std::isfinite(lower)                       ? std::max(0.0, lower + 1)
+                 : std::isfinite(upper)                       ? std::min(0.0, upper - 1)
+                                                              : 0.0;
+  }
+  return control;
+}
+
+/// Arrows tau(q, v / N) after one another, v the retraction's inverse of the boundary arrow, with controls at rest or
+/// in the middle of their bounds: a trajectory to start from. The last arrow is what remains. Where phases have guesses
+/// of their ends, the same from one to the next. The phases' stages count where there are phases.
+template <class Sys> ControlTrajectory<Sys> straight_trajectory(const ControlTask<Sys>& task, long stages = 0) {
+  using G = typename Sys::GroupoidType;
+  const G& groupoid = task.system.groupoid;
+  const std::vector<ControlPhase<Sys>> phases = phases_of(task, stages);
+  ControlTrajectory<Sys> out;
+  for (const ControlPhase<Sys>& each : phases) {
+    out.phases.push_back({each.stages, each.duration / double(each.stages)});
+    out.controls.insert(out.controls.end(), std::size_t(each.stages), resting_control(each));
+  }
+  ArrowOf<G> product = groupoid.unit(groupoid.source(task.boundary));
+  for (std::size_t first = 0; first < phases.size();) {
+    // Phases up to the next end that is known.
+    std::size_t last = first;
+    double duration = phases[first].duration;
+    long count = phases[first].stages;
+    while (last + 1 < phases.size() && !phases[last].guess) {
+      ++last;
+      duration += phases[last].duration;
+      count += phases[last].stages;
+    }
+    const ArrowOf<G>& end = last + 1 < phases.size() ? *phases[last].guess : task.boundary;
+    const ArrowOf<G> way = first == 0 ? end : groupoid.compose(groupoid.inverse(product), end);
+    const AlgebroidVector<G> part = groupoid.tau_inverse(way) / double(count);
+    for (; first <= last; ++first) {
+      // How much longer its stages are than those of all these phases on average.
+      const double length = phases[first].duration / double(phases[first].stages) / (duration / double(count));
+      const long whole = phases[first].stages - (first == last ? 1 : 0);
+      for (long k = 0; k < whole; ++k) {
+        out.arrows.push_back(groupoid.tau(groupoid.target(product), AlgebroidVector<G>(length * part)));
+        product = groupoid.compose(product, out.arrows.back());
+      }
+    }
+    out.arrows.push_back(groupoid.compose(groupoid.inverse(product), end));
+    product = end;
+  }
   return out;
 }
 

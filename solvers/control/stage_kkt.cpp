@@ -8,23 +8,28 @@ namespace lagroid {
 
 namespace {
 
-/// out += factor * A B, rows one after another: A is rows x inner, B inner x columns.
-void add_product(double factor, const double* a, const double* b, int rows, int inner, int columns, double* out) {
+/// out += factor * A B, rows one after another: A is rows x inner, B inner x columns; the rows of out are `width` long.
+void add_product(double factor, const double* a, const double* b, int rows, int inner, int columns, double* out,
+                 int width) {
   for (int i = 0; i < rows; ++i)
     for (int k = 0; k < inner; ++k) {
       const double x = factor * a[i * inner + k];
       if (x == 0) continue;
-      for (int j = 0; j < columns; ++j) out[i * columns + j] += x * b[k * columns + j];
+      for (int j = 0; j < columns; ++j) out[i * width + j] += x * b[k * columns + j];
     }
 }
+void add_product(double factor, const double* a, const double* b, int rows, int inner, int columns, double* out) {
+  add_product(factor, a, b, rows, inner, columns, out, columns);
+}
 
-/// out += factor * A^T B: A is inner x rows, B inner x columns.
-void add_transposed(double factor, const double* a, const double* b, int rows, int inner, int columns, double* out) {
+/// out += factor * A^T B: A is inner x rows, B inner x columns; the rows of out are `width` long.
+void add_transposed(double factor, const double* a, const double* b, int rows, int inner, int columns, double* out,
+                    int width) {
   for (int k = 0; k < inner; ++k)
     for (int i = 0; i < rows; ++i) {
       const double x = factor * a[k * rows + i];
       if (x == 0) continue;
-      for (int j = 0; j < columns; ++j) out[i * columns + j] += x * b[k * columns + j];
+      for (int j = 0; j < columns; ++j) out[i * width + j] += x * b[k * columns + j];
     }
 }
 
@@ -36,17 +41,33 @@ StageKkt::StageKkt(const Transcription& ends, const TranscriptionSizes& sizes)
     : sizes_(sizes),
       free_end_(ends.free_end()),
       border_index_(std::size_t(sizes_.node), -1),
-      duration_is_free_(ends.duration_is_free()) {
+      duration_border_(sizes_.phases.size(), -1) {
   for (int i = 0; i < sizes_.node; ++i)
-    if (ends.free_start()[std::size_t(i)]) border_index_[std::size_t(i)] = border_++;
-  if (duration_is_free_) ++border_;
-  block_ = sizes_.control + sizes_.equality + sizes_.node;
+    if (ends.free_start()[std::size_t(i)]) {
+      border_index_[std::size_t(i)] = int(beside_.size());
+      beside_.push_back({i, -1});
+    }
   const long stages = sizes_.stages;
+  long stage = 0;
+  for (std::size_t p = 0; p < sizes_.phases.size(); ++p) {
+    // The node where a phase begins couples to its duration in the stage before.
+    for (; stage < sizes_.phases[p].end; ++stage) {
+      const bool is_first = stage == (p == 0 ? 0 : sizes_.phases[p - 1].end);
+      if (is_first && sizes_.phases[p].duration_is_free) {
+        duration_border_[p] = int(beside_.size());
+        beside_.push_back({-1, int(p)});
+        if (stage > 0) ++columns_.back();
+      }
+      columns_.push_back(int(beside_.size()));
+    }
+  }
+  border_ = int(beside_.size());
+  block_ = sizes_.control + sizes_.equality + sizes_.node;
   diagonal_ = StageRows(stages, block_ * block_);
   coupling_ = StageRows(stages, block_ * sizes_.node);
   bordered_ = StageRows(stages, block_ * border_);
   corner_.resize(std::size_t(border_) * std::size_t(border_));
-  factors_.assign(std::size_t(stages), SymmetricFactorSized(block_));
+  for (long k = 0; k < stages; ++k) factors_.emplace_back(block_of(k));
   passed_ = StageRows(stages, sizes_.node * sizes_.node);
   border_solved_ = StageRows(stages, block_ * border_);
   corner_factor_ = SymmetricFactorSized(border_);
@@ -61,21 +82,40 @@ StageKkt::StageKkt(const Transcription& ends, const TranscriptionSizes& sizes)
 }
 
 long StageKkt::equalities() const {
-  return sizes_.stages * long(sizes_.equality - sizes_.end_equality) + sizes_.end_equality;
+  long sum = 0;
+  for (long k = 0; k < sizes_.stages; ++k) sum += sizes_.equalities_of(k);
+  return sum;
+}
+
+/// Of what is fixed: an unknown that stays zero.
+void StageKkt::keep_zero(long stage, int at) {
+  const int n = sizes_.node;
+  const int block = block_of(stage);
+  const int columns = columns_[std::size_t(stage)];
+  double* here = diagonal_[stage];
+  for (int q = 0; q < block; ++q) here[at * block + q] = here[q * block + at] = 0;
+  for (int q = 0; q < n; ++q) coupling_[stage][at * n + q] = 0;
+  for (int q = 0; q < columns; ++q) bordered_[stage][at * columns + q] = 0;
+  here[at * block + at] = 1;
 }
 
 void StageKkt::assemble(const StageDerivatives& derivatives, const StageRows& sigma, HessianPart hessian_part) {
   const int n = sizes_.node;
   const int c = sizes_.control;
-  const int m = sizes_.equality;
   const int d = sizes_.variables();
-  const int v = c + m;  // where v_{k+1} begins in a block
   std::fill(diagonal_.numbers().begin(), diagonal_.numbers().end(), 0.0);
   std::fill(coupling_.numbers().begin(), coupling_.numbers().end(), 0.0);
   std::fill(bordered_.numbers().begin(), bordered_.numbers().end(), 0.0);
   std::fill(corner_.begin(), corner_.end(), 0.0);
   std::vector<double>& h = block_work_;  // the stage's Hessian
+  std::size_t phase = 0;
+  int v_before = 0;  // where v_k began in the block of the stage before
   for (long k = 0; k < sizes_.stages; ++k) {
+    if (k == sizes_.phases[phase].end) ++phase;
+    const int m = sizes_.equalities_of(k);
+    const int v = c + m;  // where v_{k+1} begins in a block
+    const int block = v + n;
+    const int columns = columns_[std::size_t(k)];
     if (hessian_part == HessianPart::exact) {
       std::copy(derivatives.hessian[k], derivatives.hessian[k] + d * d, h.begin());
     } else {
@@ -96,27 +136,23 @@ void StageKkt::assemble(const StageDerivatives& derivatives, const StageRows& si
     double* here = diagonal_[k];
     const auto add_border = [&](int border, int variable) {
       double* column = bordered_[k] + border;
-      for (int q = n; q < 2 * n + c; ++q) column[place(q) * border_] += hessian(q, variable);
-      for (int row = 0; row < sizes_.equalities_of(k); ++row) column[(c + row) * border_] += equality(row, variable);
+      for (int q = n; q < 2 * n + c; ++q) column[place(q) * columns] += hessian(q, variable);
+      for (int row = 0; row < m; ++row) column[(c + row) * columns] += equality(row, variable);
     };
     for (int r = n; r < 2 * n + c; ++r)
-      for (int q = n; q < 2 * n + c; ++q) here[place(r) * block_ + place(q)] += hessian(r, q);
-    for (int row = 0; row < m; ++row) {
-      if (row >= sizes_.equalities_of(k)) {
-        here[(c + row) * block_ + c + row] = 1;  // not there: an unknown that stays zero
-        continue;
-      }
+      for (int q = n; q < 2 * n + c; ++q) here[place(r) * block + place(q)] += hessian(r, q);
+    for (int row = 0; row < m; ++row)
       for (int q = n; q < 2 * n + c; ++q)
-        here[(c + row) * block_ + place(q)] = here[place(q) * block_ + c + row] = equality(row, q);
-    }
+        here[(c + row) * block + place(q)] = here[place(q) * block + c + row] = equality(row, q);
     if (k > 0) {
       double* before = diagonal_[k - 1];
+      const int block_before = v_before + n;
       for (int r = 0; r < n; ++r)
-        for (int q = 0; q < n; ++q) before[(v + r) * block_ + v + q] += hessian(r, q);
+        for (int q = 0; q < n; ++q) before[(v_before + r) * block_before + v_before + q] += hessian(r, q);
       double* column = coupling_[k];
       for (int q = 0; q < n; ++q) {
         for (int r = n; r < 2 * n + c; ++r) column[place(r) * n + q] = hessian(r, q);
-        for (int row = 0; row < sizes_.equalities_of(k); ++row) column[(c + row) * n + q] = equality(row, q);
+        for (int row = 0; row < m; ++row) column[(c + row) * n + q] = equality(row, q);
       }
     } else {
       for (int q = 0; q < n; ++q) {
@@ -127,14 +163,13 @@ void StageKkt::assemble(const StageDerivatives& derivatives, const StageRows& si
           if (border_of_start(r) >= 0) corner_[std::size_t(border * border_ + border_of_start(r))] += hessian(q, r);
       }
     }
-    if (duration_is_free_) {
-      const int last = border_ - 1;
+    if (const int last = duration_border_[phase]; last >= 0) {
       const int duration = sizes_.at_duration();
       add_border(last, duration);
       corner_[std::size_t(last * border_ + last)] += hessian(duration, duration);
       for (int q = 0; q < n; ++q) {
         if (k > 0) {
-          bordered_[k - 1][(v + q) * border_ + last] += hessian(q, duration);
+          bordered_[k - 1][(v_before + q) * columns_[std::size_t(k - 1)] + last] += hessian(q, duration);
         } else if (border_of_start(q) >= 0) {
           const int border = border_of_start(q);
           corner_[std::size_t(border * border_ + last)] += hessian(q, duration);
@@ -142,17 +177,15 @@ void StageKkt::assemble(const StageDerivatives& derivatives, const StageRows& si
         }
       }
     }
+    v_before = v;
   }
-  // What is fixed of the last node: unknowns that stay zero.
-  const long last = sizes_.stages - 1;
-  for (int i = 0; i < n; ++i) {
-    if (free_end_[std::size_t(i)]) continue;
-    const int at = v + i;
-    for (int q = 0; q < block_; ++q) diagonal_[last][at * block_ + q] = diagonal_[last][q * block_ + at] = 0;
-    for (int q = 0; q < n; ++q) coupling_[last][at * n + q] = 0;
-    for (int q = 0; q < border_; ++q) bordered_[last][at * border_ + q] = 0;
-    diagonal_[last][at * block_ + at] = 1;
-  }
+  long k = 0;
+  for (const TranscriptionPhase& each : sizes_.phases)
+    for (; k < each.end; ++k)
+      for (std::size_t i = 0; i < each.control_is_fixed.size(); ++i)
+        if (each.control_is_fixed[i]) keep_zero(k, int(i));
+  for (int i = 0; i < n; ++i)
+    if (!free_end_[std::size_t(i)]) keep_zero(sizes_.stages - 1, v_before + i);
 }
 
 StageKkt::Inertia StageKkt::factor(double primal, const StageRows& dual) {
@@ -160,48 +193,53 @@ StageKkt::Inertia StageKkt::factor(double primal, const StageRows& dual) {
   dual_ = dual;
   const int n = sizes_.node;
   const int c = sizes_.control;
-  const int v = c + sizes_.equality;
   Inertia inertia{0, std::numeric_limits<double>::infinity()};
-  std::vector<double>& block = block_work_;
+  std::vector<double>& work = block_work_;
   std::vector<double>& corner = corner_work_;
   std::copy(corner_.begin(), corner_.end(), corner.begin());
   for (int i = 0; i < border_; ++i) corner[std::size_t(i * border_ + i)] += primal;
+  int v_before = 0;
   for (long k = 0; k < sizes_.stages; ++k) {
-    std::copy(diagonal_[k], diagonal_[k] + block_ * block_, block.begin());
-    for (int i = 0; i < block_; ++i) {
+    const int v = c + sizes_.equalities_of(k);
+    const int block = v + n;
+    const int columns = columns_[std::size_t(k)];
+    std::copy(diagonal_[k], diagonal_[k] + block * block, work.begin());
+    for (int i = 0; i < block; ++i) {
       const bool is_multiplier = i >= c && i < v;
-      if (is_multiplier && i - c >= sizes_.equalities_of(k)) continue;
-      block[std::size_t(i * block_ + i)] += is_multiplier ? -dual[k][i - c] : primal;
+      work[std::size_t(i * block + i)] += is_multiplier ? -dual[k][i - c] : primal;
     }
     // border_solved_ is on its way: the border here less what passes from the stages before.
-    std::copy(bordered_[k], bordered_[k] + block_ * border_, border_solved_[k]);
+    std::copy(bordered_[k], bordered_[k] + block * columns, border_solved_[k]);
     if (k > 0) {
-      std::fill(column_work_.begin(), column_work_.begin() + block_ * n, 0.0);
-      add_product(1, coupling_[k], passed_[k - 1], block_, n, n, column_work_.data());
-      for (int i = 0; i < block_; ++i)
-        for (int j = 0; j < block_; ++j) {
+      std::fill(column_work_.begin(), column_work_.begin() + block * n, 0.0);
+      add_product(1, coupling_[k], passed_[k - 1], block, n, n, column_work_.data());
+      for (int i = 0; i < block; ++i)
+        for (int j = 0; j < block; ++j) {
           double sum = 0;
           for (int q = 0; q < n; ++q) sum += column_work_[std::size_t(i * n + q)] * coupling_[k][j * n + q];
-          block[std::size_t(i * block_ + j)] -= sum;
+          work[std::size_t(i * block + j)] -= sum;
         }
-      add_product(-1, coupling_[k], border_solved_[k - 1] + v * border_, block_, n, border_, border_solved_[k]);
+      const int columns_before = columns_[std::size_t(k - 1)];
+      add_product(-1, coupling_[k], border_solved_[k - 1] + v_before * columns_before, block, n, columns_before,
+                  border_solved_[k], columns);
     }
     SymmetricFactorSized& factor = factors_[std::size_t(k)];
-    factor.compute(block.data());
+    factor.compute(work.data());
     inertia.negative += factor.negative();
     inertia.smallest = std::min(inertia.smallest, factor.smallest());
-    std::fill(column_work_.begin(), column_work_.begin() + block_ * n, 0.0);
+    std::fill(column_work_.begin(), column_work_.begin() + block * n, 0.0);
     for (int q = 0; q < n; ++q) column_work_[std::size_t((v + q) * n + q)] = 1;
     factor.solve_in_place(column_work_.data(), n);
     for (int r = 0; r < n; ++r)
       for (int q = 0; q < n; ++q)
         passed_[k][r * n + q] =
             0.5 * (column_work_[std::size_t((v + r) * n + q)] + column_work_[std::size_t((v + q) * n + r)]);
-    if (border_ > 0) {
-      std::copy(border_solved_[k], border_solved_[k] + block_ * border_, column_work_.begin());
-      factor.solve_in_place(border_solved_[k], border_);
-      add_transposed(-1, column_work_.data(), border_solved_[k], border_, block_, border_, corner.data());
+    if (columns > 0) {
+      std::copy(border_solved_[k], border_solved_[k] + block * columns, column_work_.begin());
+      factor.solve_in_place(border_solved_[k], columns);
+      add_transposed(-1, column_work_.data(), border_solved_[k], columns, block, columns, corner.data(), border_);
     }
+    v_before = v;
   }
   if (border_ > 0) {
     for (int i = 0; i < border_; ++i)
@@ -219,46 +257,54 @@ StageKkt::Inertia StageKkt::factor(double primal, const StageRows& dual) {
 void StageKkt::eliminate(const KktVector& right, KktVector& out) {
   const int n = sizes_.node;
   const int c = sizes_.control;
-  const int m = sizes_.equality;
-  const int v = c + m;
-  for (int i = 0; i < n; ++i)
-    if (border_of_start(i) >= 0) border_right_[std::size_t(border_of_start(i))] = right.primal.nodes[0][i];
-  if (duration_is_free_) border_right_.back() = right.primal.duration;
+  for (int q = 0; q < border_; ++q) border_right_[std::size_t(q)] = entry(right.primal, beside_[std::size_t(q)]);
+  std::size_t phase = 0;
+  int v_before = 0;
   for (long k = 0; k < sizes_.stages; ++k) {
+    if (k == sizes_.phases[phase].end) ++phase;
+    const int m = sizes_.equalities_of(k);
+    const int v = c + m;
+    const int block = v + n;
+    const int columns = columns_[std::size_t(k)];
     double* here = right_[k];
     std::copy(right.primal.controls[k], right.primal.controls[k] + c, here);
     std::copy(right.multipliers[k], right.multipliers[k] + m, here + c);
     std::copy(right.primal.nodes[k + 1], right.primal.nodes[k + 1] + n, here + v);
-    for (int row = sizes_.equalities_of(k); row < m; ++row) here[c + row] = 0;
+    const std::vector<bool>& is_fixed = sizes_.phases[phase].control_is_fixed;
+    for (std::size_t i = 0; i < is_fixed.size(); ++i)
+      if (is_fixed[i]) here[i] = 0;
     if (k + 1 == sizes_.stages)
       for (int i = 0; i < n; ++i)
         if (!free_end_[std::size_t(i)]) here[v + i] = 0;
-    if (k > 0) add_product(-1, coupling_[k], right_[k - 1] + v, block_, n, 1, here);
-    for (int q = 0; q < border_; ++q)
-      for (int i = 0; i < block_; ++i) border_right_[std::size_t(q)] -= border_solved_[k][i * border_ + q] * here[i];
+    if (k > 0) add_product(-1, coupling_[k], right_[k - 1] + v_before, block, n, 1, here);
+    for (int q = 0; q < columns; ++q)
+      for (int i = 0; i < block; ++i) border_right_[std::size_t(q)] -= border_solved_[k][i * columns + q] * here[i];
     factors_[std::size_t(k)].solve_in_place(here, 1);
+    v_before = v;
   }
   if (border_ > 0) corner_factor_.solve_in_place(border_right_.data(), 1);
   double* column = column_work_.data();
   for (long k = sizes_.stages; k-- > 0;) {
+    const int block = block_of(k);
     double* here = right_[k];
-    add_product(-1, border_solved_[k], border_right_.data(), block_, border_, 1, here);
+    add_product(-1, border_solved_[k], border_right_.data(), block, columns_[std::size_t(k)], 1, here);
     if (k + 1 < sizes_.stages) {
       // The pivot block's inverse times what the next stage's unknowns couple to v.
-      std::fill(column, column + block_, 0.0);
-      add_transposed(1, coupling_[k + 1], right_[k + 1], n, block_, 1, column + v);
+      std::fill(column, column + block, 0.0);
+      add_transposed(1, coupling_[k + 1], right_[k + 1], n, block_of(k + 1), 1, column + block - n, 1);
       factors_[std::size_t(k)].solve_in_place(column, 1);
-      for (int i = 0; i < block_; ++i) here[i] -= column[i];
+      for (int i = 0; i < block; ++i) here[i] -= column[i];
     }
   }
   std::fill(out.primal.nodes[0], out.primal.nodes[0] + n, 0.0);
-  for (int i = 0; i < n; ++i)
-    if (border_of_start(i) >= 0) out.primal.nodes[0][i] = border_right_[std::size_t(border_of_start(i))];
-  out.primal.duration = duration_is_free_ ? border_right_.back() : 0;
+  std::fill(out.primal.durations.begin(), out.primal.durations.end(), 0.0);
+  for (int q = 0; q < border_; ++q) entry(out.primal, beside_[std::size_t(q)]) = border_right_[std::size_t(q)];
   for (long k = 0; k < sizes_.stages; ++k) {
     const double* here = right_[k];
+    const int v = c + sizes_.equalities_of(k);
     std::copy(here, here + c, out.primal.controls[k]);
     std::copy(here + c, here + v, out.multipliers[k]);
+    std::fill(out.multipliers[k] + (v - c), out.multipliers[k] + sizes_.equality, 0.0);
     std::copy(here + v, here + v + n, out.primal.nodes[k + 1]);
   }
 }
@@ -266,57 +312,42 @@ void StageKkt::eliminate(const KktVector& right, KktVector& out) {
 void StageKkt::residual(const KktVector& right, const KktVector& out, KktVector& left) const {
   const int n = sizes_.node;
   const int c = sizes_.control;
-  const int m = sizes_.equality;
-  const int v = c + m;
-  const auto border_of = [&](const KktVector& x, int q) {
-    if (duration_is_free_ && q + 1 == border_) return x.primal.duration;
-    for (int i = 0; i < n; ++i)
-      if (border_of_start(i) == q) return x.primal.nodes[0][i];
-    return 0.0;
-  };
-  const auto entry = [&](const KktVector& x, long k, int i) {
-    return i < c ? x.primal.controls[k][i] : i < v ? x.multipliers[k][i - c] : x.primal.nodes[k + 1][i - v];
-  };
   left = right;
-  const auto subtract = [&](long k, int i, double amount) {
-    (i < c   ? left.primal.controls[k][i]
-     : i < v ? left.multipliers[k][i - c]
-             : left.primal.nodes[k + 1][i - v]) -= amount;
-  };
-  const auto subtract_border = [&](int q, double amount) {
-    if (duration_is_free_ && q + 1 == border_) {
-      left.primal.duration -= amount;
-      return;
-    }
-    for (int i = 0; i < n; ++i)
-      if (border_of_start(i) == q) left.primal.nodes[0][i] -= amount;
-  };
+  const auto beside = [&](int q) { return entry(out.primal, beside_[std::size_t(q)]); };
+  const auto subtract_beside = [&](int q, double amount) { entry(left.primal, beside_[std::size_t(q)]) -= amount; };
   for (int q = 0; q < border_; ++q) {
-    double sum = primal_ * border_of(out, q);
-    for (int r = 0; r < border_; ++r) sum += corner_[std::size_t(q * border_ + r)] * border_of(out, r);
-    subtract_border(q, sum);
+    double sum = primal_ * beside(q);
+    for (int r = 0; r < border_; ++r) sum += corner_[std::size_t(q * border_ + r)] * beside(r);
+    subtract_beside(q, sum);
   }
   for (long k = 0; k < sizes_.stages; ++k) {
-    for (int i = 0; i < block_; ++i) {
+    const int v = c + sizes_.equalities_of(k);
+    const int block = v + n;
+    const int columns = columns_[std::size_t(k)];
+    const auto of_stage = [&](int i) {
+      return i < c ? out.primal.controls[k][i] : i < v ? out.multipliers[k][i - c] : out.primal.nodes[k + 1][i - v];
+    };
+    for (int i = 0; i < block; ++i) {
       const bool is_multiplier = i >= c && i < v;
-      const bool absent = is_multiplier && i - c >= sizes_.equalities_of(k);
-      double sum = absent ? 0 : (is_multiplier ? -dual_[k][i - c] : primal_) * entry(out, k, i);
-      for (int j = 0; j < block_; ++j) sum += diagonal_[k][i * block_ + j] * entry(out, k, j);
-      for (int q = 0; q < border_; ++q) sum += bordered_[k][i * border_ + q] * border_of(out, q);
+      double sum = (is_multiplier ? -dual_[k][i - c] : primal_) * of_stage(i);
+      for (int j = 0; j < block; ++j) sum += diagonal_[k][i * block + j] * of_stage(j);
+      for (int q = 0; q < columns; ++q) sum += bordered_[k][i * columns + q] * beside(q);
       if (k > 0)
         for (int q = 0; q < n; ++q) sum += coupling_[k][i * n + q] * out.primal.nodes[k][q];
-      subtract(k, i, sum);
+      (i < c   ? left.primal.controls[k][i]
+       : i < v ? left.multipliers[k][i - c]
+               : left.primal.nodes[k + 1][i - v]) -= sum;
     }
     if (k > 0)
       for (int q = 0; q < n; ++q) {
         double sum = 0;
-        for (int i = 0; i < block_; ++i) sum += coupling_[k][i * n + q] * entry(out, k, i);
+        for (int i = 0; i < block; ++i) sum += coupling_[k][i * n + q] * of_stage(i);
         left.primal.nodes[k][q] -= sum;
       }
-    for (int q = 0; q < border_; ++q) {
+    for (int q = 0; q < columns; ++q) {
       double sum = 0;
-      for (int i = 0; i < block_; ++i) sum += bordered_[k][i * border_ + q] * entry(out, k, i);
-      subtract_border(q, sum);
+      for (int i = 0; i < block; ++i) sum += bordered_[k][i * columns + q] * of_stage(i);
+      subtract_beside(q, sum);
     }
   }
 }

@@ -1,10 +1,11 @@
 #pragma once
 /// The KKT matrix of an optimal control problem with its elimination, linear in the number of stages:
 ///
-///     unknowns of stage k:  y_k = (du_k, dlambda_k, v_{k+1}),    beside all stages:  (free components of v_0, t).
+///     unknowns of stage k:  y_k = (du_k, dlambda_k, v_{k+1}),    beside all stages:  (free ones of v_0, t_1, t_2 ...).
 ///
 /// The matrix is block-tridiagonal but for the few unknowns beside all stages, which border it: these have no place
-/// along the trajectory where their pivot would be safe.
+/// along the trajectory where their pivot would be safe. The duration of a phase has a column from where its phase
+/// begins.
 ///
 ///     StageKkt kkt(transcription);
 ///     kkt.assemble(derivatives, sigma);
@@ -55,28 +56,45 @@ class StageKkt {
   void solve(const KktVector& right, KktVector& out);
 
  private:
+  /// An unknown beside all stages: a component of v_0, or the duration of a phase.
+  struct Beside {
+    int component;
+    int phase;  ///< -1: a component
+  };
+  static double& entry(TrajectoryDisplacement& x, const Beside& at) {
+    return at.phase < 0 ? x.nodes[0][at.component] : x.durations[std::size_t(at.phase)];
+  }
+  static double entry(const TrajectoryDisplacement& x, const Beside& at) {
+    return at.phase < 0 ? x.nodes[0][at.component] : x.durations[std::size_t(at.phase)];
+  }
+
+  int block_of(long stage) const { return sizes_.control + sizes_.equalities_of(stage) + sizes_.node; }
   int border_of_start(int component) const { return border_index_[std::size_t(component)]; }
+  void keep_zero(long stage, int at);
   void eliminate(const KktVector& right, KktVector& out);
   /// right - (the matrix) out.
   void residual(const KktVector& right, const KktVector& out, KktVector& left) const;
 
   TranscriptionSizes sizes_;
   std::vector<bool> free_end_;
-  std::vector<int> border_index_;  // of each component of v_0; -1 where it is fixed
-  bool duration_is_free_;
-  int border_ = 0;  // unknowns beside all stages: free components of v_0, then the duration's t
-  int block_ = 0;   // of y_k
+  std::vector<int> border_index_;     // of each component of v_0; -1 where it is fixed
+  std::vector<int> duration_border_;  // of each phase
+  std::vector<Beside> beside_;
+  std::vector<int> columns_;  // of each stage: how many of the unknowns beside have begun
+  int border_ = 0;            // how many there are
+  int block_ = 0;             // of the largest y_k
 
   double primal_ = 0;
   StageRows dual_;
+  // Rows of a stage are of its own lengths, one after another.
   StageRows diagonal_;          // block x block
   StageRows coupling_;          // block x node, to v_k of the stage before
-  StageRows bordered_;          // block x border
+  StageRows bordered_;          // block x columns
   std::vector<double> corner_;  // border x border
 
   std::vector<SymmetricFactorSized> factors_;
   StageRows passed_;         // node x node: the v-part of the inverse of a pivot block
-  StageRows border_solved_;  // block x border: the pivot block's inverse times the border there
+  StageRows border_solved_;  // block x columns: the pivot block's inverse times the border there
   SymmetricFactorSized corner_factor_;
   std::vector<double> corner_work_;
   StageRows right_;  // block: right-hand sides on their way, then solutions

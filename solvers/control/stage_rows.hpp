@@ -15,17 +15,35 @@
 
 namespace lagroid {
 
+/// Stages with one duration, one after another.
+struct TranscriptionPhase {
+  long end = 0;  ///< the stage after its last
+  bool duration_is_free = false;
+  std::vector<bool> control_is_fixed;  ///< of each control; empty: none is
+};
+
 /// How many numbers there are of each kind.
 struct TranscriptionSizes {
-  int node = 0;          ///< n, the dimension of the groupoid: a node's displacement
-  int control = 0;       ///< c
-  int equality = 0;      ///< of phi, with the conditions on the end, which the last stage alone has
-  int end_equality = 0;  ///< how many of these are conditions on the end
-  int inequality = 0;    ///< of gamma, with the bounds of the controls
-  long stages = 0;       ///< N
+  int node = 0;           ///< n, the dimension of the groupoid: a node's displacement
+  int control = 0;        ///< c
+  int equality = 0;       ///< of phi, with the most conditions on nodes that a stage has
+  int node_equality = 0;  ///< how many of these are conditions on nodes
+  int inequality = 0;     ///< of gamma, with the bounds of the controls
+  long stages = 0;        ///< N
+  std::vector<TranscriptionPhase> phases;
+  std::vector<int> conditions;  ///< of each stage, on nodes, after its phi
 
   int variables() const { return 2 * node + control + 1; }
-  int equalities_of(long stage) const { return stage + 1 == stages ? equality : equality - end_equality; }
+  int equalities_of(long stage) const { return equality - node_equality + conditions[std::size_t(stage)]; }
+  int phase_of(long stage) const {
+    std::size_t p = 0;
+    while (stage >= phases[p].end) ++p;
+    return int(p);
+  }
+  bool control_is_fixed(long stage, int i) const {
+    const std::vector<bool>& fixed = phases[std::size_t(phase_of(stage))].control_is_fixed;
+    return !fixed.empty() && fixed[std::size_t(i)];
+  }
 
   // Where the variables of a stage begin.
   static constexpr int at_source = 0;
@@ -50,15 +68,15 @@ class StageRows {
   std::vector<double> numbers_;
 };
 
-/// A displacement of the trajectory: of node k = 0 ... N, of the control of stage k = 0 ... N-1, of the logarithm
-/// of the duration, which so stays positive.
+/// A displacement of the trajectory: of node k = 0 ... N, of the control of stage k = 0 ... N-1, of the logarithm of
+/// each phase's duration, which so stays positive.
 struct TrajectoryDisplacement {
   TrajectoryDisplacement() = default;
   explicit TrajectoryDisplacement(const TranscriptionSizes& sizes)
-      : nodes(sizes.stages + 1, sizes.node), controls(sizes.stages, sizes.control) {}
+      : nodes(sizes.stages + 1, sizes.node), controls(sizes.stages, sizes.control), durations(sizes.phases.size()) {}
   StageRows nodes;
   StageRows controls;
-  double duration = 0;
+  std::vector<double> durations;
 };
 
 inline void set_all(StageRows& rows, double x) { std::fill(rows.numbers().begin(), rows.numbers().end(), x); }
@@ -81,18 +99,22 @@ inline double largest_entry(const StageRows& rows) {
 inline void add(TrajectoryDisplacement& a, double factor, const TrajectoryDisplacement& b) {
   add(a.nodes, factor, b.nodes);
   add(a.controls, factor, b.controls);
-  a.duration += factor * b.duration;
+  for (std::size_t p = 0; p < a.durations.size(); ++p) a.durations[p] += factor * b.durations[p];
 }
 inline double dot(const TrajectoryDisplacement& a, const TrajectoryDisplacement& b) {
-  return dot(a.nodes, b.nodes) + dot(a.controls, b.controls) + a.duration * b.duration;
+  double sum = dot(a.nodes, b.nodes) + dot(a.controls, b.controls);
+  for (std::size_t p = 0; p < a.durations.size(); ++p) sum += a.durations[p] * b.durations[p];
+  return sum;
 }
 inline double largest_entry(const TrajectoryDisplacement& x) {
-  return std::max({std::abs(x.duration), largest_entry(x.nodes), largest_entry(x.controls)});
+  double most = std::max(largest_entry(x.nodes), largest_entry(x.controls));
+  for (const double t : x.durations) most = std::isnan(t) ? HUGE_VAL : std::max(most, std::abs(t));
+  return most;
 }
 inline void negate(TrajectoryDisplacement& x) {
   for (double& each : x.nodes.numbers()) each = -each;
   for (double& each : x.controls.numbers()) each = -each;
-  x.duration = -x.duration;
+  for (double& each : x.durations) each = -each;
 }
 
 }  // namespace lagroid

@@ -12,7 +12,9 @@
 ///
 /// The variables of a stage k = 0 ... N-1 (arrow k leads from node k to node k+1) stand in the order
 ///
-///     x = (a, b, du, t):    g_k -> tau(a)^{-1} g_k tau(b),    u_k -> u_k + du,    h -> h exp(t).
+///     x = (a, b, du, t):    g_k -> tau(a)^{-1} g_k tau(b),    u_k -> u_k + du,    h -> h exp(t),
+///
+/// t the same for all stages of a phase.
 ///
 /// Nothing throws; values that are not finite are the caller's to notice.
 
@@ -56,7 +58,6 @@ class Transcription {
   /// Which components of the first and of the last node's displacement are free.
   virtual const std::vector<bool>& free_start() const = 0;
   virtual const std::vector<bool>& free_end() const = 0;
-  virtual bool duration_is_free() const = 0;
 
   /// At the trajectory tried last, or where it stands.
   virtual void values(StageValues& out) const = 0;

@@ -7,16 +7,22 @@
 ///     const ControlTrajectory<DubinsCar>& found = transcription.trajectory();
 ///
 /// A stage's derivatives, exact second ones included, are automatic, in one pass: along the arrow's frame where the
-/// groupoid has one, else along both ends. Nothing throws.
+/// groupoid has one, else along both ends. A system that evaluates its cost and constraint in one writes
+/// `cost_and_constraint(g, u, h, cost, constraint)` beside them. Nothing throws.
 
 #include <lagroid/core/derivatives/arrow_frame.hpp>
 #include <lagroid/core/derivatives/displaced_arrow.hpp>
 #include <lagroid/core/scalars/second_jet.hpp>
 #include <lagroid/solvers/control/control_system.hpp>
+#include <lagroid/solvers/control/displaced_jet.hpp>
 #include <lagroid/solvers/control/transcription.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace lagroid {
 
@@ -25,23 +31,41 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   using G = typename Sys::GroupoidType;
   using A = ArrowOf<G>;
 
+  /// The trajectory's stages are those of the task's phases, one phase after another.
   TranscriptionOf(const ControlTask<Sys>& task, ControlTrajectory<Sys> start)
       : task_(task),
-        now_{std::move(start), task.boundary},
-        tried_(now_),
+        phases_(phases_of(task, long(start.arrows.size()))),
         free_start_(task.free_start.begin(), task.free_start.end()),
         free_end_(task.free_end.begin(), task.free_end.end()) {
-    for (int i = 0; i < Sys::controls; ++i) {
-      if (std::isfinite(task.upper(i))) bounds_.push_back({i, 1, task.upper(i)});
-      if (std::isfinite(task.lower(i))) bounds_.push_back({i, -1, task.lower(i)});
+    for (bool free : free_start_) start_is_free_ = start_is_free_ || free;
+    for (bool free : free_end_) end_is_fixed_ = end_is_fixed_ && !free;
+    for (int i = 0; i < Sys::controls; ++i)
+      for (const double sign : {1.0, -1.0}) {
+        const auto is_bounded = [&](const auto& phase) { return Bound{i, sign}.holds(phase); };
+        if (std::any_of(phases_.begin(), phases_.end(), is_bounded)) bounds_.push_back({i, sign});
+      }
+    for (const double sign : {1.0, -1.0}) {
+      const auto is_bounded = [&](const auto& phase) { return DurationBound{sign}.holds(phase); };
+      if (std::any_of(phases_.begin(), phases_.end(), is_bounded)) duration_bounds_.push_back({sign});
     }
     sizes_.node = n;
     sizes_.control = Sys::controls;
-    sizes_.equality = Sys::equalities + Sys::end_equalities;
-    sizes_.end_equality = Sys::end_equalities;
-    sizes_.inequality = Sys::inequalities + int(bounds_.size());
-    sizes_.stages = long(now_.path.arrows.size());
-    for (bool free : task.free_end) end_is_fixed_ = end_is_fixed_ && !free;
+    sizes_.inequality = before_bounds() + int(bounds_.size());
+    sizes_.stages = long(start.arrows.size());
+    for (std::size_t p = 0; p < phases_.size(); ++p) {
+      TranscriptionPhase& phase = sizes_.phases.emplace_back();
+      phase.end = (p == 0 ? 0 : sizes_.phases[p - 1].end) + start.phases[p].stages;
+      phase.duration_is_free = phases_[p].duration_is_free;
+      for (int i = 0; i < Sys::controls; ++i) {
+        if (phases_[p].lower(i) < phases_[p].upper(i)) continue;
+        phase.control_is_fixed.resize(Sys::controls);
+        phase.control_is_fixed[std::size_t(i)] = true;
+        for (long k = phase.end - start.phases[p].stages; k < phase.end; ++k)
+          start.controls[std::size_t(k)](i) = phases_[p].lower(i);
+      }
+    }
+    place_conditions(start);
+    stand_at(std::move(start), task.boundary);
   }
 
   const ControlTrajectory<Sys>& trajectory() const { return now_.path; }
@@ -59,45 +83,76 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     for (std::size_t k = path.arrows.size() - 1; k-- > 1;) rest = groupoid.compose(path.arrows[k], rest);
     path.arrows.front() = groupoid.project(groupoid.compose(boundary, groupoid.inverse(rest)));
     now_.boundary = boundary;
+    locate_conditions();
     tried_ = now_;
   }
-  /// Another trajectory of as many stages, and what its arrows lead to.
+  /// Another trajectory of as many stages, and what the task's ends lead to.
   void stand_at(ControlTrajectory<Sys> path, const A& boundary) {
-    now_ = {std::move(path), boundary};
+    now_ = {std::move(path), boundary, std::vector<A>(conditions_.size(), boundary)};
+    const G& groupoid = task_.system.groupoid;
+    if (now_.path.start) now_.boundary = groupoid.compose(groupoid.inverse(*now_.path.start), boundary);
+    if (start_is_free_ && !now_.path.start) now_.path.start = groupoid.unit(groupoid.source(boundary));
+    locate_conditions();
     tried_ = now_;
   }
+
+  /// How many rows of gamma there are before those of the controls' bounds.
+  int before_bounds() const { return Sys::inequalities + int(duration_bounds_.size()); }
 
   const TranscriptionSizes& sizes() const override { return sizes_; }
   const std::vector<bool>& free_start() const override { return free_start_; }
   const std::vector<bool>& free_end() const override { return free_end_; }
-  bool duration_is_free() const override { return task_.duration_is_free; }
 
   void values(StageValues& out) const override {
     const ControlTrajectory<Sys>& path = tried_.path;
-    for (long k = 0; k < sizes_.stages; ++k) {
-      const auto at = std::size_t(k);
-      const Functions<double> f = functions<double>(path.arrows[at], path.controls[at], path.step, k);
-      out.cost[k][0] = f.cost;
-      for (int i = 0; i < sizes_.equality; ++i) out.equality[k][i] = f.equality(i);
-      for (int i = 0; i < Sys::inequalities; ++i) out.inequality[k][i] = f.inequality(i);
-      for (std::size_t i = 0; i < bounds_.size(); ++i)
-        out.inequality[k][Sys::inequalities + int(i)] =
-            bounds_[i].sign * (path.controls[at](bounds_[i].control) - bounds_[i].value);
-    }
+    long k = 0;
+    for (std::size_t p = 0; p < phases_.size(); ++p)
+      for (; k < sizes_.phases[p].end; ++k) {
+        const auto at = std::size_t(k);
+        const ControlPhase<Sys>& phase = phases_[p];
+        const auto f = functions<double>(phase.system, path.arrows[at], path.controls[at], path.phases[p].step);
+        out.cost[k][0] = f.cost;
+        for (int i = 0; i < Sys::equalities; ++i) out.equality[k][i] = f.equality(i);
+        for (int i = 0; i < Sys::inequalities; ++i)
+          out.inequality[k][i] = phase.inequalities_hold ? f.inequality(i) : not_there;
+        for (std::size_t i = 0; i < duration_bounds_.size(); ++i)
+          out.inequality[k][Sys::inequalities + int(i)] =
+              duration_bounds_[i].holds(phase) && begins(k, p)
+                  ? duration_bounds_[i].value(phase, double(path.phases[p].stages) * path.phases[p].step)
+                  : not_there;
+        for (std::size_t i = 0; i < bounds_.size(); ++i)
+          out.inequality[k][before_bounds() + int(i)] =
+              bounds_[i].holds(phase) ? bounds_[i].sign * (path.controls[at](bounds_[i].control) - bounds_[i].of(phase))
+                                      : not_there;
+      }
+    for (std::size_t i = 0; i < conditions_.size(); ++i)
+      conditions_[i].psi->values(task_.system.groupoid, tried_.nodes[i],
+                                 out.equality[conditions_[i].stage] + conditions_[i].row);
   }
 
   void derivatives(const StageRows& lambda, const StageRows& z, StageDerivatives& out) const override {
-    for (long k = 0; k < sizes_.stages; ++k) {
-      if constexpr (framed) {
-        along_frame(k, lambda[k], z[k], out);
-      } else {
-        along_ends(k, lambda[k], z[k], out);
+    static constexpr std::array<double, std::size_t(Sys::inequalities) + 1> none{};
+    long k = 0;
+    for (std::size_t p = 0; p < phases_.size(); ++p)
+      for (; k < sizes_.phases[p].end; ++k) {
+        const ControlPhase<Sys>& phase = phases_[p];
+        const double* weights = phase.inequalities_hold ? z[k] : none.data();
+        if constexpr (framed) {
+          along_frame(phase.system, k, now_.path.phases[p].step, lambda[k], weights, out);
+        } else {
+          along_ends(phase.system, k, now_.path.phases[p].step, lambda[k], weights, out);
+        }
+        double* rows = out.inequality[k];
+        if (!phase.inequalities_hold) std::fill(rows, rows + Sys::inequalities * d, 0.0);
+        std::fill(rows + Sys::inequalities * d, rows + sizes_.inequality * d, 0.0);
+        for (std::size_t i = 0; i < duration_bounds_.size(); ++i)
+          if (duration_bounds_[i].holds(phase) && begins(k, p))
+            rows[(Sys::inequalities + int(i) + 1) * d - 1] = duration_bounds_[i].sign;
+        double* bounds = rows + before_bounds() * d;
+        for (std::size_t i = 0; i < bounds_.size(); ++i)
+          if (bounds_[i].holds(phase)) bounds[int(i) * d + 2 * n + bounds_[i].control] = bounds_[i].sign;
       }
-      double* bounds = out.inequality[k] + Sys::inequalities * d;
-      std::fill(bounds, bounds + int(bounds_.size()) * d, 0.0);
-      for (std::size_t i = 0; i < bounds_.size(); ++i)
-        bounds[int(i) * d + 2 * n + bounds_[i].control] = bounds_[i].sign;
-    }
+    for (std::size_t i = 0; i < conditions_.size(); ++i) add_condition(i, lambda, out);
   }
 
   void try_displacement(const TrajectoryDisplacement& by, double fraction) override {
@@ -110,96 +165,228 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     const A first = groupoid.tau(groupoid.source(now_.boundary), node(0));
     A back = groupoid.inverse(first);
     A product = groupoid.unit(groupoid.target(first));
+    if (start_is_free_) tried_.path.start = groupoid.project(groupoid.compose(*now_.path.start, first));
+    std::size_t condition = 0;
+    for (; condition < conditions_.size() && conditions_[condition].node == 0; ++condition)
+      tried_.nodes[condition] = start_is_free_ ? *tried_.path.start : product;
     for (long k = 0; k < sizes_.stages; ++k) {
       const auto at = std::size_t(k);
       // A fixed end is where it was: what rounding adds up along the path is the last arrow's.
       if (k + 1 == sizes_.stages && end_is_fixed_) {
         tried_.boundary = groupoid.compose(groupoid.inverse(first), now_.boundary);
         tried_.path.arrows[at] = groupoid.project(groupoid.compose(groupoid.inverse(product), tried_.boundary));
+        product = tried_.boundary;
       } else {
         displace_next(groupoid, now_.path.arrows[at], node(k + 1), back, tried_.path.arrows[at], product);
       }
+      for (; condition < conditions_.size() && conditions_[condition].node == k + 1; ++condition)
+        tried_.nodes[condition] =
+            start_is_free_ ? groupoid.project(groupoid.compose(*tried_.path.start, product)) : product;
       for (int i = 0; i < Sys::controls; ++i)
         tried_.path.controls[at](i) = now_.path.controls[at](i) + fraction * by.controls[k][i];
     }
     if (!end_is_fixed_) tried_.boundary = product;
-    tried_.path.step = now_.path.step * std::exp(fraction * by.duration);
+    for (std::size_t p = 0; p < phases_.size(); ++p)
+      tried_.path.phases[p].step = now_.path.phases[p].step * std::exp(fraction * by.durations[p]);
   }
   void accept() override { now_ = tried_; }
 
  private:
   static constexpr int n = Sys::dimension;
   static constexpr int d = 2 * n + Sys::controls + 1;
-  static constexpr int all_equalities = Sys::equalities + Sys::end_equalities;
   static constexpr bool framed = HasArrowFrame<G>;
 
-  /// u_control <= value (sign 1) or >= value (sign -1).
+  /// What an inequality is that a phase has not: it holds.
+  static constexpr double not_there = -1;
+
+  /// u_control <= a phase's upper bound (sign 1) or >= its lower bound (sign -1).
   struct Bound {
     int control;
     double sign;
-    double value;
+    double of(const ControlPhase<Sys>& phase) const { return sign > 0 ? phase.upper(control) : phase.lower(control); }
+    bool holds(const ControlPhase<Sys>& phase) const {
+      return std::isfinite(of(phase)) && phase.lower(control) < phase.upper(control);
+    }
+  };
+  /// log(T / longest) <= 0 (sign 1) or log(shortest / T) <= 0 of a phase whose duration is free, in its first stage.
+  struct DurationBound {
+    double sign;
+    double of(const ControlPhase<Sys>& phase) const { return sign > 0 ? phase.longest : phase.shortest; }
+    bool holds(const ControlPhase<Sys>& phase) const {
+      return phase.duration_is_free && (sign > 0 ? std::isfinite(phase.longest) : phase.shortest > 0);
+    }
+    double value(const ControlPhase<Sys>& phase, double duration) const {
+      return sign * std::log(duration / of(phase));
+    }
+  };
+  bool begins(long stage, std::size_t phase) const { return stage == (phase == 0 ? 0 : sizes_.phases[phase - 1].end); }
+  /// psi of a node, in a row of the stage that ends there; of the first, in stage 0.
+  struct PlacedCondition {
+    std::shared_ptr<const NodeCondition<G>> psi;
+    long node;
+    long stage;
+    int row;
   };
   struct Standing {
     ControlTrajectory<Sys> path;
     A boundary;
+    std::vector<A> nodes;  // of each condition, from where the task begins
+  };
+  /// Of a stage's functions. Second-order jets are large: no copies are made on the way.
+  template <class S> struct Arguments {
+    ArrowOf<G, S> g;
+    Vector<S, Sys::controls> u;
+    S h;
   };
   template <class S> struct Functions {
     S cost;
-    Vector<S, all_equalities> equality;
+    Vector<S, Sys::equalities> equality;
     Vector<S, Sys::inequalities> inequality;
   };
 
   template <class S>
-  Functions<S> functions(const ArrowOf<G, S>& g, const Vector<S, Sys::controls>& u, const S& h, long stage) const {
+  static Functions<S> functions(const Sys& system, const ArrowOf<G, S>& g, const Vector<S, Sys::controls>& u,
+                                const S& h) {
     Functions<S> out;
-    const Sys& system = task_.system;
-    out.cost = system.cost(g, u, h);
-    out.equality.template head<Sys::equalities>() = system.constraint(g, u, h);
-    if constexpr (Sys::end_equalities > 0) {
-      if (stage + 1 == sizes_.stages) {
-        out.equality.template tail<Sys::end_equalities>() = system.end_constraint(system.groupoid.target(g));
-      } else {
-        out.equality.template tail<Sys::end_equalities>().fill(S(0));
-      }
+    if constexpr (requires { system.cost_and_constraint(g, u, h, out.cost, out.equality); }) {
+      system.cost_and_constraint(g, u, h, out.cost, out.equality);
+    } else {
+      out.cost = system.cost(g, u, h);
+      out.equality = system.constraint(g, u, h);
     }
     if constexpr (Sys::inequalities > 0) out.inequality = system.inequality(g, u, h);
     return out;
   }
 
-  /// The stage's Lagrangian; place(jet, row) writes the first derivatives of each of its functions.
+  void place_conditions(const ControlTrajectory<Sys>& path) {
+    const auto place = [&](const std::shared_ptr<const NodeCondition<G>>& psi, long node) {
+      if (!psi) return;
+      const long stage = std::max(node - 1, 0L);
+      int& count = sizes_.conditions[std::size_t(stage)];
+      conditions_.push_back({psi, node, stage, Sys::equalities + count});
+      count += psi->size();
+    };
+    sizes_.conditions.assign(std::size_t(sizes_.stages), 0);
+    place(task_.start_condition, 0);
+    std::shared_ptr<const NodeCondition<G>> of_nodes;
+    if constexpr (Sys::node_equalities > 0) {
+      of_nodes = node_condition<G, Sys::node_equalities>(
+          [system = task_.system](const auto& node) { return system.node_constraint(system.groupoid.target(node)); });
+    }
+    for (std::size_t p = 0; p < phases_.size(); ++p) {
+      if (of_nodes)
+        for (long k = p == 0 ? 1 : sizes_.phases[p - 1].end + 1; k < sizes_.phases[p].end; ++k) place(of_nodes, k);
+      if (of_nodes && (p + 1 < phases_.size() || restricts_end(*of_nodes, path))) place(of_nodes, sizes_.phases[p].end);
+      place(phases_[p].end_condition, sizes_.phases[p].end);
+    }
+    place(task_.end_condition, sizes_.stages);
+    if constexpr (Sys::end_equalities > 0) {
+      const auto psi = [system = phases_.back().system](const auto& node) {
+        return system.end_constraint(system.groupoid.target(node));
+      };
+      place(node_condition<G, Sys::end_equalities>(psi), sizes_.stages);
+    }
+    sizes_.node_equality = *std::max_element(sizes_.conditions.begin(), sizes_.conditions.end());
+    sizes_.equality = Sys::equalities + sizes_.node_equality;
+  }
+  /// Whether a condition depends on what is free of the last node.
+  bool restricts_end(const NodeCondition<G>& psi, const ControlTrajectory<Sys>& path) const {
+    const int size = psi.size();
+    const std::vector<double> none(std::size_t(size), 0.0);
+    std::vector<double> rows(std::size_t(size * n));
+    std::vector<double> hessian(std::size_t(n * n));
+    psi.derivatives(task_.system.groupoid, path.arrows.back(), none.data(), rows.data(), hessian.data());
+    for (int i = 0; i < size * n; ++i)
+      if (free_end_[std::size_t(i % n)] && rows[std::size_t(i)] != 0) return true;
+    return false;
+  }
+  /// Where the trajectory stands: the nodes that conditions are on.
+  void locate_conditions() {
+    if (conditions_.empty()) return;
+    const G& groupoid = task_.system.groupoid;
+    A product = now_.path.start ? *now_.path.start : groupoid.unit(groupoid.source(now_.path.arrows.front()));
+    long k = 0;
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      for (; k < conditions_[i].node; ++k)
+        product = groupoid.project(groupoid.compose(product, now_.path.arrows[std::size_t(k)]));
+      now_.nodes[i] = product;
+    }
+  }
+  /// Rows and Hessian of a condition: along the node alone.
+  void add_condition(std::size_t i, const StageRows& lambda, StageDerivatives& out) const {
+    const PlacedCondition& at = conditions_[i];
+    const int size = at.psi->size();
+    std::vector<double>& rows = condition_rows_;
+    std::vector<double>& hessian = condition_hessian_;
+    rows.resize(std::size_t(size * n));
+    hessian.assign(std::size_t(n * n), 0.0);
+    at.psi->derivatives(task_.system.groupoid, now_.nodes[i], lambda[at.stage] + at.row, rows.data(), hessian.data());
+    const int begin = at.node == 0 ? 0 : n;
+    double* equality = out.equality[at.stage] + at.row * d;
+    std::fill(equality, equality + size * d, 0.0);
+    for (int r = 0; r < size; ++r)
+      std::copy(rows.begin() + r * n, rows.begin() + (r + 1) * n, equality + r * d + begin);
+    double* square = out.hessian[at.stage];
+    for (int r = 0; r < n; ++r)
+      for (int q = 0; q < n; ++q) square[(begin + r) * d + begin + q] += hessian[std::size_t(r * n + q)];
+  }
+
+  /// Systems that know <lambda, phi> without each of phi: second derivatives are its alone.
+  static constexpr bool weighs =
+      requires(const Sys& system, const A& g, const Vector<double, Sys::controls>& u, double h, const double* lambda) {
+    system.weighted_constraint(g, u, h, lambda);
+  };
+
   template <class J, class Place>
-  J lagrangian_of(const Functions<J>& f, long stage, const double* lambda, const double* z, const Place& place,
-                  StageDerivatives& out) const {
+  void place_rows(const Functions<J>& f, long stage, const Place& place, StageDerivatives& out) const {
     place(f.cost, out.gradient[stage]);
-    J lagrangian = f.cost;
-    for (int i = 0; i < all_equalities; ++i) {
-      place(f.equality(i), out.equality[stage] + i * d);
-      lagrangian += f.equality(i) * lambda[i];
+    for (int i = 0; i < Sys::equalities; ++i) place(f.equality(i), out.equality[stage] + i * d);
+    for (int i = 0; i < Sys::inequalities; ++i) place(f.inequality(i), out.inequality[stage] + i * d);
+  }
+  /// The stage's Lagrangian. at<T>() are arrow, controls and duration over jets T of N variables; place(jet, row)
+  /// writes the first derivatives of each function.
+  template <int N, class At, class Place>
+  SecondJet<double, N> lagrangian_of(const Sys& system, const At& at, long stage, const double* lambda, const double* z,
+                                     const Place& place, StageDerivatives& out) const {
+    using J = SecondJet<double, N>;
+    const auto& [g, u, h] = at.template operator()<J>();
+    if constexpr (weighs) {
+      using First = Jet<double, N>;
+      const auto& [g1, u1, h1] = at.template operator()<First>();
+      place_rows(functions<First>(system, g1, u1, h1), stage, place, out);
+      J lagrangian = system.cost(g, u, h) + system.weighted_constraint(g, u, h, lambda);
+      if constexpr (Sys::inequalities > 0) {
+        const Vector<J, Sys::inequalities> gamma = system.inequality(g, u, h);
+        for (int i = 0; i < Sys::inequalities; ++i) lagrangian += gamma(i) * z[i];
+      }
+      return lagrangian;
+    } else {
+      const Functions<J> f = functions<J>(system, g, u, h);
+      place_rows(f, stage, place, out);
+      J lagrangian = f.cost;
+      for (int i = 0; i < Sys::equalities; ++i) lagrangian += f.equality(i) * lambda[i];
+      for (int i = 0; i < Sys::inequalities; ++i) lagrangian += f.inequality(i) * z[i];
+      return lagrangian;
     }
-    for (int i = 0; i < Sys::inequalities; ++i) {
-      place(f.inequality(i), out.inequality[stage] + i * d);
-      lagrangian += f.inequality(i) * z[i];
-    }
-    return lagrangian;
   }
 
   /// In one pass along the arrow's frame, pushed to its ends (second_derivatives.hpp).
-  void along_frame(long stage, const double* lambda, const double* z, StageDerivatives& out) const requires framed {
+  void along_frame(const Sys& system, long stage, double h, const double* lambda, const double* z,
+                   StageDerivatives& out) const requires framed {
     constexpr int f = arrow_dimension_of<G>();
     constexpr int others = Sys::controls + 1;
     constexpr int all = f + others;
-    using J = SecondJet<double, all>;
     const G& groupoid = task_.system.groupoid;
     const auto at = std::size_t(stage);
     const A& g = now_.path.arrows[at];
-    Vector<J, Sys::controls> u;
-    for (int i = 0; i < Sys::controls; ++i) u(i) = J::variable(now_.path.controls[at](i), f + i);
-    const double h = now_.path.step;
-    const J step = J::variable(0, all - 1).chain(h, h, h);  // h exp(x)
-    const Functions<J> at_jet = functions<J>(groupoid.template frame_jet<J>(g), u, step, stage);
+    const auto arguments = [&]<class J>() {
+      Vector<J, Sys::controls> u;
+      for (int i = 0; i < Sys::controls; ++i) u(i) = J::variable(now_.path.controls[at](i), f + i);
+      return Arguments<J>{groupoid.template frame_jet<J>(g), u, J::variable(0, all - 1).chain(h, h, h)};  // h exp(x)
+    };
 
     // From a row over the frame, controls and duration to one over both ends, controls and duration.
-    const auto push = [&](const J& of, double* row) {
+    const auto push = [&](const auto& of, double* row) {
       const Vector<double, all> gradient = of.gradient();
       const Vector<double, f> frame = gradient.template head<f>();
       const Vector<double, n> source = groupoid.template frame_to_end<End::source>(g, frame);
@@ -210,7 +397,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       }
       for (int i = 0; i < others; ++i) row[2 * n + i] = gradient(f + i);
     };
-    const J lagrangian = lagrangian_of(at_jet, stage, lambda, z, push, out);
+    const SecondJet<double, all> lagrangian = lagrangian_of<all>(system, arguments, stage, lambda, z, push, out);
 
     const Matrix<double, all, all> whole = lagrangian.hessian();
     const Matrix<double, f, f> hessian = whole.template topLeftCorner<f, f>();
@@ -245,35 +432,35 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   }
 
   /// Along both ends, by the operations of the groupoid alone.
-  void along_ends(long stage, const double* lambda, const double* z, StageDerivatives& out) const {
-    using J = SecondJet<double, d>;
+  void along_ends(const Sys& system, long stage, double h, const double* lambda, const double* z,
+                  StageDerivatives& out) const {
     const G& groupoid = task_.system.groupoid;
     const auto at = std::size_t(stage);
-    Vector<J, n> a;
-    Vector<J, n> b;
-    Vector<J, Sys::controls> u;
-    for (int i = 0; i < n; ++i) {
-      a(i) = J::variable(0, i);
-      b(i) = J::variable(0, n + i);
-    }
-    for (int i = 0; i < Sys::controls; ++i) u(i) = J::variable(now_.path.controls[at](i), 2 * n + i);
-    const double h = now_.path.step;
-    const J step = J::variable(0, d - 1).chain(h, h, h);  // h exp(x)
-    const ArrowOf<G, J> g = groupoid.translate(a, groupoid.template cast<J>(now_.path.arrows[at]), b);
-    const Functions<J> f = functions<J>(g, u, step, stage);
-    const auto place = [](const J& of, double* row) { Eigen::Map<Vector<double, d>>{row} = of.gradient(); };
-    const J lagrangian = lagrangian_of(f, stage, lambda, z, place, out);
+    const auto arguments = [&]<class J>() {
+      Vector<J, Sys::controls> u;
+      for (int i = 0; i < Sys::controls; ++i) u(i) = J::variable(now_.path.controls[at](i), 2 * n + i);
+      return Arguments<J>{displaced_jet<J>(groupoid, now_.path.arrows[at], 0, n), u,
+                          J::variable(0, d - 1).chain(h, h, h)};  // h exp(x)
+    };
+    const auto place = [](const auto& of, double* row) { Eigen::Map<Vector<double, d>>{row} = of.gradient(); };
+    const SecondJet<double, d> lagrangian = lagrangian_of<d>(system, arguments, stage, lambda, z, place, out);
     Eigen::Map<Matrix<double, d, d>>{out.hessian[stage]} = lagrangian.hessian();
   }
 
   ControlTask<Sys> task_;
-  Standing now_;
-  Standing tried_;
+  std::vector<ControlPhase<Sys>> phases_;
   std::vector<bool> free_start_;
   std::vector<bool> free_end_;
+  bool start_is_free_ = false;
   bool end_is_fixed_ = true;
+  std::vector<DurationBound> duration_bounds_;
   std::vector<Bound> bounds_;
+  std::vector<PlacedCondition> conditions_;
   TranscriptionSizes sizes_;
+  Standing now_;
+  Standing tried_;
+  mutable std::vector<double> condition_rows_;
+  mutable std::vector<double> condition_hessian_;
 };
 
 }  // namespace lagroid

@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class LinearisedMotion {
   virtual const LinearStep& stage(int k) const = 0;
   /// What is observed, at the present node.
   virtual NodeValues observe() const = 0;
+
+  /// What is observed later, before the next node, by a part of a step; derivatives are by the state at the present
+  /// node. None where that step has no root, or where the motion has no such steps.
+  virtual std::optional<NodeValues> observe_later(double /*time*/) { return std::nullopt; }
 
   /// All that the next step goes on from, and back to it: the steps from there have the same bits.
   virtual std::vector<double> save() = 0;

@@ -48,7 +48,12 @@ inline TrajectoryDisplacement random_displacement(const Transcription& of, std::
     if (!of.free_start()[std::size_t(i)]) out.nodes[0][i] = 0;
     if (!of.free_end()[std::size_t(i)]) out.nodes[last][i] = 0;
   }
-  if (of.duration_is_free()) out.duration = std::uniform_real_distribution<double>(-1, 1)(generator);
+  const std::vector<TranscriptionPhase>& phases = of.sizes().phases;
+  for (std::size_t p = 0; p < phases.size(); ++p)
+    if (phases[p].duration_is_free) out.durations[p] = std::uniform_real_distribution<double>(-1, 1)(generator);
+  for (long k = 0; k < last; ++k)
+    for (int i = 0; i < of.sizes().control; ++i)
+      if (of.sizes().control_is_fixed(k, i)) out.controls[k][i] = 0;
   return out;
 }
 
@@ -57,7 +62,7 @@ inline std::vector<double> stage_part(const TranscriptionSizes& sizes, const Tra
   std::vector<double> x(of.nodes[stage], of.nodes[stage] + sizes.node);
   x.insert(x.end(), of.nodes[stage + 1], of.nodes[stage + 1] + sizes.node);
   x.insert(x.end(), of.controls[stage], of.controls[stage] + sizes.control);
-  x.push_back(of.duration);
+  x.push_back(of.durations[std::size_t(sizes.phase_of(stage))]);
   return x;
 }
 

@@ -11,19 +11,26 @@
 ///       template <class S> S running_cost(const Object<S>&, const Controls<S>& u) const { return u(0) * u(0); }
 ///     };
 ///
-/// Requires `flow` and `running_cost`, const templates on the scalar. Order 2 in h. [G] section 6.1 for groups.
+/// Requires `flow` and `running_cost`, const templates on the scalar. Where they read the objects of some factors of a
+/// product only, `static constexpr std::array flow_reads{false, true}` says of which: the others are not evaluated, and
+/// a flow that reads one does not compile. Order 2 in h. [G] section 6.1 for groups.
 
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/solvers/control/control_system.hpp>
 
+#include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace lagroid {
 
+/// In place of an object that a flow does not read (`flow_reads`).
+struct Unread {};
+
 namespace detail {
 
-/// beta(tau(q, v)), factor by factor of a product, so that no retraction is evaluated where a group has but one object.
+/// beta(tau(q, v)) of one factor. A group has but one object, and evaluates no retraction.
 template <class G, class Q, class S>
 auto moved_object(const G& groupoid, const Q& q, const Vector<S, G::dimension>& v) {
   if constexpr (G::object_coordinate_count() == 0) {
@@ -32,17 +39,29 @@ auto moved_object(const G& groupoid, const Q& q, const Vector<S, G::dimension>& 
     return groupoid.target(groupoid.tau(q, v));
   }
 }
-template <class... Gs, class Q, class S>
-auto moved_object(const Product<Gs...>& groupoid, const Q& q, const Vector<S, Product<Gs...>::dimension>& v) {
+
+/// The same, of those factors of a product that are read.
+template <class Read, class G, class S, class A>
+auto moved_target(const G& groupoid, const A& g, const Vector<S, G::dimension>& v) {
+  return moved_object(groupoid, groupoid.source(g), v);
+}
+template <class Read, class... Gs, class S, class A>
+auto moved_target(const Product<Gs...>& groupoid, const A& g, const Vector<S, Product<Gs...>::dimension>& v) {
   int at = 0;
-  const auto moved = [&]<class F, class P>(const F& factor, const P& point) {
-    Vector<S, F::dimension> part;
-    for (int i = 0; i < F::dimension; ++i) part(i) = v(at + i);
-    at += F::dimension;
-    return moved_object(factor, point, part);
+  const auto moved = [&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+    const auto& factor = std::get<I>(groupoid.factor);
+    using F = std::remove_cvref_t<decltype(factor)>;
+    const int begin = std::exchange(at, at + F::dimension);
+    if constexpr (Read::reads(I)) {
+      Vector<S, F::dimension> part;
+      for (int i = 0; i < F::dimension; ++i) part(i) = v(begin + i);
+      return moved_object(factor, factor.source(std::get<I>(g)), part);
+    } else {
+      return Unread{};
+    }
   };
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return std::tuple{moved(std::get<I>(groupoid.factor), std::get<I>(q))...};  // braces: in their order
+    return std::tuple{moved(std::integral_constant<std::size_t, I>())...};  // braces: in their order
   }
   (std::index_sequence_for<Gs...>());
 }
@@ -53,21 +72,53 @@ template <class Derived, class G, int ControlCount, int Inequalities = 0>
 struct ControlledFlow : ControlSystem<Derived, G, ControlCount, G::dimension, Inequalities> {
   static constexpr int rank = G::dimension;
 
+  template <class A, class V, class S, class Value>
+  using Member = Value (ControlledFlow::*)(const A&, const V&, const S&) const;
+  /// Whether cost and constraint are those of this class.
+  template <class A, class V, class S> static constexpr bool inherits = requires {
+    requires std::is_same_v<decltype(&Derived::template cost<A, V, S>), Member<A, V, S, S>>;
+    requires std::is_same_v<decltype(&Derived::template constraint<A, V, S>), Member<A, V, S, Vector<S, rank>>>;
+  };
+
+  /// Whether flow and running cost read the object of a factor of a product.
+  static constexpr bool reads(std::size_t factor) {
+    if constexpr (requires { Derived::flow_reads; }) {
+      return Derived::flow_reads[factor];
+    } else {
+      return true;
+    }
+  }
+
   template <class A, class V, class S> S cost(const A& g, const V& u, const S& h) const {
     return self().running_cost(midpoint<S>(g, this->groupoid.tau_inverse(g)), u) * h;
   }
   template <class A, class V, class S> Vector<S, rank> constraint(const A& g, const V& u, const S& h) const {
-    Vector<S, rank> out = this->groupoid.tau_inverse(g);
-    const Vector<S, rank> velocity = self().flow(midpoint<S>(g, out), u);
-    for (int i = 0; i < rank; ++i) out(i) -= h * velocity(i);
+    S cost;
+    Vector<S, rank> out;
+    evaluate(g, u, h, cost, out);
     return out;
+  }
+  /// Both, from one midpoint. Not of a class that writes one of them anew.
+  template <class A, class V, class S>
+  requires inherits<A, V, S>
+  void cost_and_constraint(const A& g, const V& u, const S& h, S& cost, Vector<S, rank>& constraint) const {
+    evaluate(g, u, h, cost, constraint);
   }
 
  private:
   const Derived& self() const { return static_cast<const Derived&>(*this); }
-  template <class S, class A> auto midpoint(const A& g, Vector<S, rank> displacement) const {
-    for (int i = 0; i < rank; ++i) displacement(i) = displacement(i) * 0.5;
-    return detail::moved_object(this->groupoid, this->groupoid.source(g), displacement);
+  template <class A, class V, class S>
+  void evaluate(const A& g, const V& u, const S& h, S& cost, Vector<S, rank>& constraint) const {
+    constraint = this->groupoid.tau_inverse(g);
+    const auto q = midpoint<S>(g, constraint);
+    cost = self().running_cost(q, u) * h;
+    const Vector<S, rank> velocity = self().flow(q, u);
+    for (int i = 0; i < rank; ++i) constraint(i) -= h * velocity(i);
+  }
+  template <class S, class A> auto midpoint(const A& g, const Vector<S, rank>& displacement) const {
+    Vector<S, rank> half;
+    for (int i = 0; i < rank; ++i) half(i) = displacement(i) * 0.5;
+    return detail::moved_target<ControlledFlow>(this->groupoid, g, half);
   }
 };
 

@@ -41,19 +41,20 @@ struct Switches {
 };
 
 /// All effects of one kind: one virtual call for the forces of them all. A scene without them makes none.
-class Effects {
+template <class S = double> class BasicEffects {
  public:
-  virtual ~Effects() = default;
+  virtual ~BasicEffects() = default;
   /// Adds what acts at this configuration.
-  virtual void add_loads(const Configuration& at, Loads& loads) const = 0;
+  virtual void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& loads) const = 0;
   /// The potential energy, J; zero for what has none.
-  virtual double energy(const Configuration& at) const = 0;
+  virtual S energy(const BasicConfiguration<S>& at) const = 0;
   virtual void place(const Places& places) = 0;
   /// Whether it attracts by inverse squares, so that a time scale follows from its energy.
   virtual bool attracts() const { return false; }
   /// The sites that forces act on.
   virtual std::vector<Site> sites() const = 0;
 };
+using Effects = BasicEffects<>;
 
 /// An effect is a small struct with the `sites` it acts on and, if it needs them, the `attitudes`; both arrays. It
 /// writes either
@@ -61,9 +62,9 @@ class Effects {
 ///                                                                        arguments, one an attitude
 /// of which forces and torques are derived automatically, or
 ///     double energy(const Configuration& at) const;   void add_loads(const Configuration& at, Loads& f) const;
-template <class E>
-concept WritesLoads = requires(const E& e, const Configuration& at, Loads& f) {
-  { e.energy(at) } -> std::convertible_to<double>;
+template <class E, class S = double>
+concept WritesLoads = requires(const E& e, const BasicConfiguration<S>& at, BasicLoads<S>& f) {
+  { e.energy(at) } -> std::convertible_to<S>;
   e.add_loads(at, f);
 };
 
@@ -86,13 +87,15 @@ template <class K> void place_kernel(K& kernel, const Places& places) {
 namespace detail {
 
 /// Of place or attitude k, the 3 numbers that may carry derivatives are 3k, 3k + 1, 3k + 2.
-template <class S, class Variable> Vector<S, 3> varied(const Vec& x, int k, const Variable& variable) {
+template <class S, class X, class Variable>
+Vector<S, 3> varied(const Vector<X, 3>& x, int k, const Variable& variable) {
   return {variable(x(0), 3 * k), variable(x(1), 3 * k + 1), variable(x(2), 3 * k + 2)};
 }
 
 /// A (1 + hat e), e the varied zero.
-template <class S, class Variable> Matrix<S, 3, 3> varied(const Mat& a, int k, const Variable& variable) {
-  const Vector<S, 3> e = varied<S>(Vec(Vec::Zero()), k, variable);
+template <class S, class X, class Variable>
+Matrix<S, 3, 3> varied(const Matrix<X, 3, 3>& a, int k, const Variable& variable) {
+  const Vector<S, 3> e = varied<S>(Vector<X, 3>(Vector<X, 3>::Constant(X(0))), k, variable);
   Matrix<S, 3, 3> out;
   for (int r = 0; r < 3; ++r) {
     out(r, 0) = e(2) * a(r, 1) - e(1) * a(r, 2) + a(r, 0);
@@ -105,8 +108,8 @@ template <class S, class Variable> Matrix<S, 3, 3> varied(const Mat& a, int k, c
 template <class E> Attitude attitude_of(const E& effect, int i) { return effect.attitudes[std::size_t(i)]; }
 
 /// The energy over a scalar S.
-template <class S, class E, class Variable>
-S energy_over(const E& effect, const Configuration& at, const Variable& variable) {
+template <class S, class E, class X, class Variable>
+S energy_over(const E& effect, const BasicConfiguration<X>& at, const Variable& variable) {
   constexpr int n = site_count<E>();
   return [&]<int... I, int... J>(std::integer_sequence<int, I...>, std::integer_sequence<int, J...>) {
     if constexpr (sizeof...(J) == 0) {
@@ -122,19 +125,19 @@ S energy_over(const E& effect, const Configuration& at, const Variable& variable
 }  // namespace detail
 
 /// All effects of the kind E of a scene.
-template <class E> class EffectsOf final : public Effects {
+template <class E, class S = double> class EffectsOf final : public BasicEffects<S> {
  public:
   void add(const E& effect) { all_.push_back(effect); }
 
-  void add_loads(const Configuration& at, Loads& loads) const override {
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& loads) const override {
     for (const E& effect : all_) {
-      if constexpr (WritesLoads<E>) {
+      if constexpr (WritesLoads<E, S>) {
         effect.add_loads(at, loads);
       } else {
         constexpr int n = site_count<E>();
         constexpr int m = attitude_count<E>();
-        using J = Jet<double, 3 * (n + m)>;
-        const J u = detail::energy_over<J>(effect, at, [](double x, int i) { return J::variable(x, i); });
+        using J = Jet<S, 3 * (n + m)>;
+        const J u = detail::energy_over<J>(effect, at, [](const S& x, int i) { return J::variable(x, i); });
         const auto du = u.gradient();
         for (int i = 0; i < n; ++i) loads(effect.sites[std::size_t(i)]) -= du.template segment<3>(3 * i);
         if constexpr (m > 0)
@@ -143,13 +146,13 @@ template <class E> class EffectsOf final : public Effects {
     }
   }
 
-  double energy(const Configuration& at) const override {
-    double sum = 0;
+  S energy(const BasicConfiguration<S>& at) const override {
+    S sum = 0;
     for (const E& effect : all_) {
-      if constexpr (WritesLoads<E>) {
+      if constexpr (WritesLoads<E, S>) {
         sum += effect.energy(at);
       } else {
-        sum += detail::energy_over<double>(effect, at, [](double x, int) { return x; });
+        sum += detail::energy_over<S>(effect, at, [](const S& x, int) { return x; });
       }
     }
     return sum;

@@ -9,73 +9,82 @@
 namespace lagroid::multibody {
 
 /// A constant force, such as a weight m g: U = -f.x.
-struct ConstantForce {
+template <class S = double> struct BasicConstantForce {
   std::array<Site, 1> sites;
-  Vec force;  ///< N
+  Vector<S, 3> force;  ///< N
 
-  double energy(const Configuration& at) const { return -force.dot(at(sites[0])); }
-  void add_loads(const Configuration&, Loads& f) const { f(sites[0]) += force; }
+  S energy(const BasicConfiguration<S>& at) const { return -force.dot(at(sites[0])); }
+  void add_loads(const BasicConfiguration<S>&, BasicLoads<S>& f) const { f(sites[0]) += force; }
 };
+using ConstantForce = BasicConstantForce<>;
 
 /// Attraction by a fixed centre: U = -strength / |x - centre|.
-struct CentralGravity {
+template <class S = double> struct BasicCentralGravity {
   static constexpr bool attracts = true;
   std::array<Site, 1> sites;
-  Vec centre = Vec::Zero();  ///< m
-  double strength = 1;       ///< G m M, kg m^3/s^2
+  Vector<S, 3> centre = Vector<S, 3>::Zero();  ///< m
+  S strength = 1;                              ///< G m M, kg m^3/s^2
 
-  double energy(const Configuration& at) const { return -strength / (at(sites[0]) - centre).norm(); }
-  void add_loads(const Configuration& at, Loads& f) const {
-    const Vec d = at(sites[0]) - centre;
-    const double square = d.squaredNorm();
-    f(sites[0]) -= (strength / (square * std::sqrt(square))) * d;
+  S energy(const BasicConfiguration<S>& at) const { return -strength / (at(sites[0]) - centre).norm(); }
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    using std::sqrt;
+    const Vector<S, 3> d = at(sites[0]) - centre;
+    const S square = d.squaredNorm();
+    f(sites[0]) -= (strength / (square * sqrt(square))) * d;
   }
 };
+using CentralGravity = BasicCentralGravity<>;
 
 /// Attraction (or repulsion) of two: U = -strength / sqrt(|x1 - x0|^2 + softening^2): gravity with strength G m0 m1,
 /// and charges with strength -k q0 q1.
-struct InverseSquare {
+template <class S = double> struct BasicInverseSquare {
   std::array<Site, 2> sites;
-  double strength = 1;   ///< kg m^3/s^2
-  double softening = 0;  ///< m
+  S strength = 1;   ///< kg m^3/s^2
+  S softening = 0;  ///< m
 
-  double energy(const Configuration& at) const {
-    return -strength / std::sqrt((at(sites[1]) - at(sites[0])).squaredNorm() + softening * softening);
+  S energy(const BasicConfiguration<S>& at) const {
+    using std::sqrt;
+    return -strength / sqrt((at(sites[1]) - at(sites[0])).squaredNorm() + softening * softening);
   }
-  void add_loads(const Configuration& at, Loads& f) const {
-    const Vec d = at(sites[1]) - at(sites[0]);
-    const double square = d.squaredNorm() + softening * softening;
-    const Vec pull = (strength / (square * std::sqrt(square))) * d;
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    using std::sqrt;
+    const Vector<S, 3> d = at(sites[1]) - at(sites[0]);
+    const S square = d.squaredNorm() + softening * softening;
+    const Vector<S, 3> pull = (strength / (square * sqrt(square))) * d;
     f(sites[0]) += pull;
     f(sites[1]) -= pull;
   }
 };
+using InverseSquare = BasicInverseSquare<>;
 
 /// Attraction of all pairs of bodies: U = -sum_{i<j} G m_i m_j / sqrt(|x_i - x_j|^2 + softening^2).
-class MutualGravity final : public Effects {
+template <class S = double> class BasicMutualGravity final : public BasicEffects<S> {
  public:
-  MutualGravity(double constant, double softening) : constant_(constant), square_softening_(softening * softening) {}
-  void add(Site site, double mass) {
+  BasicMutualGravity(const S& constant, const S& softening)
+      : constant_(constant), square_softening_(softening * softening) {}
+  void add(Site site, const S& mass) {
     sites_.push_back(site);
     masses_.push_back(mass);
   }
   bool attracts() const override { return true; }
 
-  double energy(const Configuration& at) const override {
-    double sum = 0;
+  S energy(const BasicConfiguration<S>& at) const override {
+    using std::sqrt;
+    S sum = 0;
     for (std::size_t i = 0; i < sites_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        sum -= masses_[i] * masses_[j] / std::sqrt((at(sites_[i]) - at(sites_[j])).squaredNorm() + square_softening_);
+        sum -= masses_[i] * masses_[j] / sqrt((at(sites_[i]) - at(sites_[j])).squaredNorm() + square_softening_);
     return constant_ * sum;
   }
-  void add_loads(const Configuration& at, Loads& f) const override {
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const override {
+    using std::sqrt;
     for (std::size_t i = 0; i < sites_.size(); ++i) {
-      const Vec x = at(sites_[i]);
-      Vec sum = Vec::Zero();
+      const Vector<S, 3> x = at(sites_[i]);
+      Vector<S, 3> sum = Vector<S, 3>::Zero();
       for (std::size_t j = 0; j < i; ++j) {
-        const Vec d = at(sites_[j]) - x;
-        const double square = d.squaredNorm() + square_softening_;
-        const Vec pull = (constant_ * masses_[i] * masses_[j] / (square * std::sqrt(square))) * d;
+        const Vector<S, 3> d = at(sites_[j]) - x;
+        const S square = d.squaredNorm() + square_softening_;
+        const Vector<S, 3> pull = (constant_ * masses_[i] * masses_[j] / (square * sqrt(square))) * d;
         sum += pull;
         f(sites_[j]) -= pull;
       }
@@ -88,119 +97,133 @@ class MutualGravity final : public Effects {
   std::vector<Site> sites() const override { return sites_; }
 
  private:
-  double constant_;
-  double square_softening_;
+  S constant_;
+  S square_softening_;
   std::vector<Site> sites_;
-  std::vector<double> masses_;
+  std::vector<S> masses_;
 };
+using MutualGravity = BasicMutualGravity<>;
 
 /// U = k (|x1 - x0| - l)^2 / 2. Requires that the ends do not meet, unless l = 0.
-struct Spring {
+template <class S = double> struct BasicSpring {
   std::array<Site, 2> sites;
-  double stiffness = 1;  ///< k, N/m
-  double length = 0;     ///< l, at rest, m
+  S stiffness = 1;  ///< k, N/m
+  S length = 0;     ///< l, at rest, m
 
-  double energy(const Configuration& at) const {
-    const double stretch = (at(sites[1]) - at(sites[0])).norm() - length;
+  S energy(const BasicConfiguration<S>& at) const {
+    const S stretch = (at(sites[1]) - at(sites[0])).norm() - length;
     return 0.5 * stiffness * stretch * stretch;
   }
-  void add_loads(const Configuration& at, Loads& f) const {
-    const Vec d = at(sites[1]) - at(sites[0]);
-    const double factor = length == 0 ? stiffness : stiffness * (1 - length / d.norm());
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    const Vector<S, 3> d = at(sites[1]) - at(sites[0]);
+    const S factor = stays_zero(length) ? stiffness : stiffness * (1 - length / d.norm());
     f(sites[0]) += factor * d;
     f(sites[1]) -= factor * d;
   }
 };
+using Spring = BasicSpring<>;
 
 /// A torsional spring between the axes u of one body and v of another (each fixed in it, of unit length): U = k (1 -
 /// cos(angle between them)), for small angles k angle^2 / 2.
-struct TorsionSpring {
+template <class S = double> struct BasicTorsionSpring {
   std::array<Site, 0> sites;
   std::array<Attitude, 2> attitudes;
-  Vec u{0, 0, 1};
-  Vec v{0, 0, 1};
-  double stiffness = 1;  ///< k, N m
+  Vector<S, 3> u{0, 0, 1};
+  Vector<S, 3> v{0, 0, 1};
+  S stiffness = 1;  ///< k, N m
 
-  double energy(const Configuration& at) const {
+  S energy(const BasicConfiguration<S>& at) const {
     return 0.5 * stiffness * (at(attitudes[0]) * u - at(attitudes[1]) * v).squaredNorm();
   }
-  void add_loads(const Configuration& at, Loads& f) const {
-    const Mat& a = at(attitudes[0]);
-    const Mat& b = at(attitudes[1]);
-    f(attitudes[0]) += stiffness * u.cross(Vec(a.transpose() * (b * v)));
-    f(attitudes[1]) += stiffness * v.cross(Vec(b.transpose() * (a * u)));
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    const Matrix<S, 3, 3>& a = at(attitudes[0]);
+    const Matrix<S, 3, 3>& b = at(attitudes[1]);
+    f(attitudes[0]) += stiffness * u.cross(Vector<S, 3>(a.transpose() * (b * v)));
+    f(attitudes[1]) += stiffness * v.cross(Vector<S, 3>(b.transpose() * (a * u)));
   }
 };
+using TorsionSpring = BasicTorsionSpring<>;
 
 /// The same between planar bodies, of angles a and b: U = k (1 - cos(b - a - rest)).
-struct PlanarTorsionSpring {
+template <class S = double> struct BasicPlanarTorsionSpring {
   std::array<Site, 2> sites;  ///< Scene::planar_place of the bodies; the ground's angle is zero at the origin
-  double stiffness = 1;       ///< k, N m
-  double rest = 0;            ///< b - a at rest, rad
+  S stiffness = 1;            ///< k, N m
+  S rest = 0;                 ///< b - a at rest, rad
 
-  double energy(const Configuration& at) const {
-    const double half = std::sin(0.5 * twist(at));
+  S energy(const BasicConfiguration<S>& at) const {
+    using std::sin;
+    const S half = sin(0.5 * twist(at));
     return 2 * stiffness * half * half;
   }
-  void add_loads(const Configuration& at, Loads& f) const {
-    const double torque = stiffness * std::sin(twist(at));
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    using std::sin;
+    const S torque = stiffness * sin(twist(at));
     f(sites[0])(2) += torque;
     f(sites[1])(2) -= torque;
   }
 
  private:
-  double twist(const Configuration& at) const { return at(sites[1])(2) - at(sites[0])(2) - rest; }
+  S twist(const BasicConfiguration<S>& at) const { return at(sites[1])(2) - at(sites[0])(2) - rest; }
 };
+using PlanarTorsionSpring = BasicPlanarTorsionSpring<>;
 
 /// What a frame that turns about an axis through the origin puts on a mass at rest in it: U = -m |Omega x x|^2 / 2. The
 /// other part, on a mass that moves, is `Scene::gyroscopic_force` by 2 m Omega.
-struct Centrifugal {
+template <class S = double> struct BasicCentrifugal {
   std::array<Site, 1> sites;
-  double mass = 1;
-  Vec rate{0, 0, 1};  ///< Omega, rad/s
+  S mass = 1;
+  Vector<S, 3> rate{0, 0, 1};  ///< Omega, rad/s
 
-  double energy(const Configuration& at) const { return -0.5 * mass * rate.cross(at(sites[0])).squaredNorm(); }
-  void add_loads(const Configuration& at, Loads& f) const {
-    f(sites[0]) -= mass * rate.cross(Vec(rate.cross(at(sites[0]))));
+  S energy(const BasicConfiguration<S>& at) const { return -0.5 * mass * rate.cross(at(sites[0])).squaredNorm(); }
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    f(sites[0]) -= mass * rate.cross(Vector<S, 3>(rate.cross(at(sites[0]))));
   }
 };
+using Centrifugal = BasicCentrifugal<>;
 
 /// A force f cos(rate t + phase) at a point, in space.
-struct PeriodicForce {
+template <class S = double> struct BasicPeriodicForce {
   std::array<Site, 1> sites;
-  Vec force;         ///< N
-  double rate = 0;   ///< rad/s
-  double phase = 0;  ///< rad
+  Vector<S, 3> force;  ///< N
+  S rate = 0;          ///< rad/s
+  S phase = 0;         ///< rad
 
-  double energy(const Configuration&) const { return 0; }
-  void add_loads(const Configuration& at, Loads& f) const { f(sites[0]) += std::cos(rate * at.time + phase) * force; }
+  S energy(const BasicConfiguration<S>&) const { return 0; }
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    using std::cos;
+    f(sites[0]) += cos(rate * at.time + phase) * force;
+  }
 };
+using PeriodicForce = BasicPeriodicForce<>;
 
 /// A torque fixed in the body.
-struct BodyTorque {
+template <class S = double> struct BasicBodyTorque {
   std::array<Site, 0> sites;
   std::array<Attitude, 1> attitudes;
-  Vec torque;  ///< N m
+  Vector<S, 3> torque;  ///< N m
 
-  double energy(const Configuration&) const { return 0; }
-  void add_loads(const Configuration&, Loads& f) const { f(attitudes[0]) += torque; }
+  S energy(const BasicConfiguration<S>&) const { return 0; }
+  void add_loads(const BasicConfiguration<S>&, BasicLoads<S>& f) const { f(attitudes[0]) += torque; }
 };
+using BodyTorque = BasicBodyTorque<>;
 
 /// A motor between two bodies: the torque cos(rate t + phase) on the second about an axis fixed in the first, and its
 /// opposite on the first.
-struct Motor {
+template <class S = double> struct BasicMotor {
   std::array<Site, 0> sites;
   std::array<Attitude, 2> attitudes;
-  Vec torque;        ///< in the first body's frame, N m
-  double rate = 0;   ///< rad/s
-  double phase = 0;  ///< rad
+  Vector<S, 3> torque;  ///< in the first body's frame, N m
+  S rate = 0;           ///< rad/s
+  S phase = 0;          ///< rad
 
-  double energy(const Configuration&) const { return 0; }
-  void add_loads(const Configuration& at, Loads& f) const {
-    const Vec now = std::cos(rate * at.time + phase) * torque;
+  S energy(const BasicConfiguration<S>&) const { return 0; }
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    using std::cos;
+    const Vector<S, 3> now = cos(rate * at.time + phase) * torque;
     f(attitudes[0]) -= now;
     f(attitudes[1]) += at(attitudes[1]).transpose() * (at(attitudes[0]) * now);
   }
 };
+using Motor = BasicMotor<>;
 
 }  // namespace lagroid::multibody

@@ -28,21 +28,22 @@ struct RowSize {
 };
 
 /// One arrow of a scene: two configurations, and the motion between them without the rounding of their difference.
-struct SceneArrow {
-  const Configuration& before;
-  const Configuration& after;
-  const std::vector<Vec>& displacements;  ///< of point masses and centres of mass, m
-  const std::vector<Vec>& turns;          ///< coordinates xi of the attitudes' turns, in the bodies' frames
+template <class S = double> struct BasicSceneArrow {
+  const BasicConfiguration<S>& before;
+  const BasicConfiguration<S>& after;
+  const std::vector<Vector<S, 3>>& displacements;  ///< of point masses and centres of mass, m
+  const std::vector<Vector<S, 3>>& turns;          ///< coordinates xi of the attitudes' turns, in the bodies' frames
   double h;
 
   /// Of a point mass or a centre of mass; of a planar body's own place (Scene::planar_place) with its angle.
-  const Vec& displacement(Site s) const { return displacements[std::size_t(s.index)]; }
+  const Vector<S, 3>& displacement(Site s) const { return displacements[std::size_t(s.index)]; }
   /// Zero for the ground.
-  Vec turn(Attitude a) const {
+  Vector<S, 3> turn(Attitude a) const {
     const auto i = std::size_t(a.index);
-    return i < turns.size() ? turns[i] : Vec(Vec::Zero());
+    return i < turns.size() ? turns[i] : Vector<S, 3>(Vector<S, 3>::Zero());
   }
 };
+using SceneArrow = BasicSceneArrow<>;
 
 /// How the rows of a joint act.
 enum class Role : char {
@@ -59,29 +60,31 @@ enum class Role : char {
 /// along displacements of that point, then one for each attitude, its derivative along rotations of that body about the
 /// body's axes. Both are displacements of the target of the arrow. Where `along_arrows`, they are instead derivatives
 /// along the displacement over the arrow and the coordinates xi of the rotation over it, with the source held fixed.
-class Joints {
+template <class S = double> class BasicJoints {
  public:
-  virtual ~Joints() = default;
+  virtual ~BasicJoints() = default;
   virtual int rows() const = 0;
   virtual Role role() const = 0;
   virtual bool along_arrows() const = 0;
   virtual std::vector<Site> sites(int joint) const = 0;
   virtual std::vector<Attitude> attitudes(int joint) const = 0;
   virtual int count() const = 0;
-  virtual void values(const SceneArrow& motion, int first, int count, double* c) const = 0;
-  virtual void gradients(const SceneArrow& motion, int first, int count, Vec* g) const = 0;
+  virtual void values(const BasicSceneArrow<S>& motion, int first, int count, S* c) const = 0;
+  virtual void gradients(const BasicSceneArrow<S>& motion, int first, int count, Vector<S, 3>* g) const = 0;
   /// Of vakonomic rows: the gradients along the source, displacement and xi being held.
-  virtual void drifts(const SceneArrow& motion, int first, int count, Vec* g) const = 0;
+  virtual void drifts(const BasicSceneArrow<S>& motion, int first, int count, Vector<S, 3>* g) const = 0;
   /// The covectors of the reactions at an object, and the sizes of the rows there.
-  virtual void reactions(const Configuration& at, int first, int count, Vec* g, RowSize* size) const = 0;
+  virtual void reactions(const BasicConfiguration<S>& at, int first, int count, Vector<S, 3>* g,
+                         RowSize* size) const = 0;
   /// Of damping rows: c.
-  virtual double damping(int joint) const = 0;
+  virtual S damping(int joint) const = 0;
   /// Of vakonomic rows: lambda at the start.
-  virtual double multiplier(int joint, int row) const = 0;
+  virtual S multiplier(int joint, int row) const = 0;
   virtual void place(const Places& places) = 0;
   /// Puts them into this order.
   virtual void reorder(const std::vector<int>& order) = 0;
 };
+using Joints = BasicJoints<>;
 
 /// A joint is a small struct with `rows`, the `sites` and, if it needs them, the `attitudes` it touches. On objects,
 /// C(q) = 0, it writes
@@ -95,10 +98,10 @@ class Joints {
 /// `Vakonomic` too,
 ///     void drift(const SceneArrow& motion, Vec* g) const;
 /// With a member `damping` it is no constraint but a damper, of the rate of C or of phi.
-template <class J> class JointsOf final : public Joints {
+template <class J, class S = double> class JointsOf final : public BasicJoints<S> {
  public:
   static constexpr int width = J::rows * (site_count<J>() + attitude_count<J>());
-  static constexpr bool arrows = requires(const J& joint, const SceneArrow& motion, double* c) {
+  static constexpr bool arrows = requires(const J& joint, const BasicSceneArrow<S>& motion, S* c) {
     joint.value(motion, c);
   };
   static constexpr bool damps = requires(const J& joint) { joint.damping; };
@@ -125,7 +128,7 @@ template <class J> class JointsOf final : public Joints {
       return {};
     }
   }
-  void values(const SceneArrow& motion, int first, int count, double* c) const override {
+  void values(const BasicSceneArrow<S>& motion, int first, int count, S* c) const override {
     const J* joint = all_.data() + first;
     for (int i = 0; i < count; ++i) {
       if constexpr (arrows) {
@@ -133,14 +136,14 @@ template <class J> class JointsOf final : public Joints {
       } else {
         joint[i].value(motion.after, c + i * J::rows);
         if constexpr (damps) {
-          double before[J::rows];
+          S before[J::rows];
           joint[i].value(motion.before, before);
           for (int row = 0; row < J::rows; ++row) c[i * J::rows + row] -= before[row];
         }
       }
     }
   }
-  void gradients(const SceneArrow& motion, int first, int count, Vec* g) const override {
+  void gradients(const BasicSceneArrow<S>& motion, int first, int count, Vector<S, 3>* g) const override {
     const J* joint = all_.data() + first;
     for (int i = 0; i < count; ++i) {
       if constexpr (arrows) {
@@ -151,19 +154,19 @@ template <class J> class JointsOf final : public Joints {
       }
     }
   }
-  void drifts(const SceneArrow& motion, int first, int count, Vec* g) const override {
+  void drifts(const BasicSceneArrow<S>& motion, int first, int count, Vector<S, 3>* g) const override {
     if constexpr (optimal)
       for (int i = 0; i < count; ++i) all_[std::size_t(first + i)].drift(motion, g + i * width);
   }
-  double damping(int joint) const override {
+  S damping(int joint) const override {
     if constexpr (damps) return all_[std::size_t(joint)].damping;
     return 0;
   }
-  double multiplier(int joint, int row) const override {
+  S multiplier(int joint, int row) const override {
     if constexpr (optimal) return all_[std::size_t(joint)].multipliers[std::size_t(row)];
     return 0;
   }
-  void reactions(const Configuration& at, int first, int count, Vec* g, RowSize* size) const override {
+  void reactions(const BasicConfiguration<S>& at, int first, int count, Vector<S, 3>* g, RowSize* size) const override {
     const J* joint = all_.data() + first;
     for (int i = 0; i < count; ++i) {
       if constexpr (arrows) {

@@ -1,5 +1,6 @@
 #include <lagroid/systems/multibody/model.hpp>
 
+#include <lagroid/core/derivatives/varied_directions.hpp>
 #include <lagroid/systems/multibody/solver/memory.hpp>
 
 #include <algorithm>
@@ -7,37 +8,41 @@
 
 namespace lagroid::multibody {
 
-void Model::place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const {
+template <class S>
+void BasicModel<S>::place_arms(BasicConfiguration<S>& at, const Range& arms, const Range& planar_arms) const {
   for (const Arm& a : arms.of(points.arms))
     at.x[std::size_t(a.site)] = at.x[std::size_t(a.base)] + at.attitude[std::size_t(a.rotation)] * a.arm;
   for (const Arm& a : planar_arms.of(points.planar_arms)) {
-    const Vec& q = at.x[std::size_t(a.base)];
-    const double c = std::cos(q(2));
-    const double s = std::sin(q(2));
+    const Vector<S, 3>& q = at.x[std::size_t(a.base)];
+    using std::cos, std::sin;
+    const S c = cos(q(2));
+    const S s = sin(q(2));
     at.x[std::size_t(a.site)] = {q(0) + c * a.arm(0) - s * a.arm(1), q(1) + s * a.arm(0) + c * a.arm(1), 0};
   }
 }
 
-void Model::act(const Configuration& at, Loads& loads) const {
+template <class S> void BasicModel<S>::act(const BasicConfiguration<S>& at, BasicLoads<S>& loads) const {
   if (effects.empty()) return;
-  std::fill(loads.on.begin(), loads.on.end(), Vec::Zero());
-  std::fill(loads.torque.begin(), loads.torque.end(), Vec::Zero());
+  std::fill(loads.on.begin(), loads.on.end(), Vector<S, 3>::Zero());
+  std::fill(loads.torque.begin(), loads.torque.end(), Vector<S, 3>::Zero());
   for (const Acting& each : effects)
     if (is_on(each)) each.effects->add_loads(at, loads);
   for (const Arm& a : points.pushed_arms) {
-    const Vec& f = loads.on[std::size_t(a.site)];
+    const Vector<S, 3>& f = loads.on[std::size_t(a.site)];
     loads.on[std::size_t(a.base)] += f;
-    loads.torque[std::size_t(a.rotation)] += a.arm.cross(Vec(at.attitude[std::size_t(a.rotation)].transpose() * f));
+    loads.torque[std::size_t(a.rotation)] +=
+        a.arm.cross(Vector<S, 3>(at.attitude[std::size_t(a.rotation)].transpose() * f));
   }
   for (const Arm& a : points.pushed_planar_arms) {
-    const Vec& f = loads.on[std::size_t(a.site)];
-    const Vec d = at.x[std::size_t(a.site)] - at.x[std::size_t(a.base)];
-    loads.on[std::size_t(a.base)] += Vec(f(0), f(1), d(0) * f(1) - d(1) * f(0));
+    const Vector<S, 3>& f = loads.on[std::size_t(a.site)];
+    const Vector<S, 3> d = at.x[std::size_t(a.site)] - at.x[std::size_t(a.base)];
+    loads.on[std::size_t(a.base)] += Vector<S, 3>(f(0), f(1), d(0) * f(1) - d(1) * f(0));
   }
 }
 
-void Model::react(const Configuration& at, const Island& island, std::vector<Vec>& gradients,
-                  std::vector<RowSize>& sizes) const {
+template <class S>
+void BasicModel<S>::react(const BasicConfiguration<S>& at, const Island& island, std::vector<Vector<S, 3>>& gradients,
+                          std::vector<RowSize>& sizes) const {
   for (const Batch& batch : island.batches.of(rows.batches))
     if (is_on(batch))
       batch.joints->reactions(at, batch.first, batch.count, gradients.data() + batch.gradient,
@@ -45,23 +50,28 @@ void Model::react(const Configuration& at, const Island& island, std::vector<Vec
   pull_back(at, island, gradients);
 }
 
-void Model::find_gradients(const SceneArrow& motion, const Island& island, std::vector<Vec>& gradients) const {
+template <class S>
+void BasicModel<S>::find_gradients(const BasicSceneArrow<S>& motion, const Island& island,
+                                   std::vector<Vector<S, 3>>& gradients) const {
   for (const Batch& batch : island.batches.of(rows.batches))
     if (is_on(batch)) batch.joints->gradients(motion, batch.first, batch.count, gradients.data() + batch.gradient);
   pull_back(motion.after, island, gradients);
 }
 
-void Model::pull_back(const Configuration& at, const Island& island, std::vector<Vec>& gradients) const {
+template <class S>
+void BasicModel<S>::pull_back(const BasicConfiguration<S>& at, const Island& island,
+                              std::vector<Vector<S, 3>>& gradients) const {
   for (const Lever& l : island.levers.of(rows.levers))
     gradients[std::size_t(l.to)] =
-        l.arm.cross(Vec(at.attitude[std::size_t(l.rotation)].transpose() * gradients[std::size_t(l.from)]));
+        l.arm.cross(Vector<S, 3>(at.attitude[std::size_t(l.rotation)].transpose() * gradients[std::size_t(l.from)]));
   for (const PlanarLever& l : island.planar_levers.of(rows.planar_levers)) {
-    const Vec& g = gradients[std::size_t(l.from)];
-    const Vec d = at.x[std::size_t(l.site)] - at.x[std::size_t(l.body)];
+    const Vector<S, 3>& g = gradients[std::size_t(l.from)];
+    const Vector<S, 3> d = at.x[std::size_t(l.site)] - at.x[std::size_t(l.body)];
     gradients[std::size_t(l.to)] = {g(0), g(1), d(0) * g(1) - d(1) * g(0)};
   }
 }
 
+template <>
 void Model::gather(const Island& island, const std::vector<Vec>& gradients, const std::vector<Vec>& linear_weights,
                    const std::vector<Vec>& rotation_weights, const Counts& counts, Elimination& matrix) const {
   matrix.clear();
@@ -82,7 +92,7 @@ void Model::gather(const Island& island, const std::vector<Vec>& gradients, cons
     if (!counts(role(island.rows.first + row))) matrix.value(matrix.index(row, row)) = 1;
 }
 
-std::size_t Model::memory() const {
+template <> std::size_t Model::memory() const {
   return bytes_of(places.sites, places.attitudes, linear_places, factors.inertia, factors.planar, factors.dragged,
                   factors.moments, factors.turn_damping, factors.damped_turns, points.arms, points.planar_arms,
                   points.pushed_arms, points.pushed_planar_arms, points.moving, rows.roles, rows.left_out,
@@ -90,5 +100,13 @@ std::size_t Model::memory() const {
                   rows.linear_products, rows.rotation_products, rows.levers, rows.planar_levers, rows.moving_entries,
                   islands);
 }
+
+template struct BasicModel<double>;
+template void BasicModel<VariedNumber>::place_arms(BasicConfiguration<VariedNumber>&, const Range&, const Range&) const;
+template void BasicModel<VariedNumber>::act(const BasicConfiguration<VariedNumber>&, BasicLoads<VariedNumber>&) const;
+template void BasicModel<VariedNumber>::react(const BasicConfiguration<VariedNumber>&, const Island&,
+                                              std::vector<Vector<VariedNumber, 3>>&, std::vector<RowSize>&) const;
+template void BasicModel<VariedNumber>::find_gradients(const BasicSceneArrow<VariedNumber>&, const Island&,
+                                                       std::vector<Vector<VariedNumber, 3>>&) const;
 
 }  // namespace lagroid::multibody

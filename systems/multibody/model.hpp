@@ -19,7 +19,7 @@ namespace lagroid::multibody {
 /// its groupoid, the points that joints and effects know, the rows of the joints, and the islands, what joints tie
 /// together. Factors and what
 /// belongs to them are sorted by island.
-struct Model {
+template <class S = double> struct BasicModel {
   struct Range {
     int first = 0;
     int last = 0;
@@ -33,16 +33,16 @@ struct Model {
   /// A linear factor on which the force -drag v acts.
   struct Dragged {
     int factor;
-    Mat drag;
+    Matrix<S, 3, 3> drag;
   };
   /// Linear factors (point masses, centres of mass, planar bodies) and rotations; those of no island first.
   struct Factors {
-    std::vector<Vec> inertia;
+    std::vector<Vector<S, 3>> inertia;
     std::vector<char> planar;
     std::vector<Dragged> dragged;
-    std::vector<Vec> moments;
+    std::vector<Vector<S, 3>> moments;
     Retraction rotation = Retraction::exponential;
-    std::vector<Vec> turn_damping;
+    std::vector<Vector<S, 3>> turn_damping;
     std::vector<int> damped_turns;  ///< the rotations of which it is not zero
   };
 
@@ -51,15 +51,21 @@ struct Model {
     int site;
     int base;
     int rotation;
-    Vec arm;
+    Vector<S, 3> arm;
   };
   /// A point of the ground that moves.
   struct MovingGround {
     int site;
-    Vec place, amplitude;
-    double rate;
-    Vec at(double time) const { return place + (1 - std::cos(rate * time)) * amplitude; }
-    Vec velocity(double time) const { return rate * std::sin(rate * time) * amplitude; }
+    Vector<S, 3> place, amplitude;
+    S rate;
+    Vector<S, 3> at(double time) const {
+      using std::cos;
+      return place + (1 - cos(rate * time)) * amplitude;
+    }
+    Vector<S, 3> velocity(double time) const {
+      using std::sin;
+      return rate * sin(rate * time) * amplitude;
+    }
   };
   /// Points fixed in bodies, those of no island last, those that effects act on once more; moving points of the ground.
   struct Points {
@@ -69,7 +75,7 @@ struct Model {
 
   /// Joints of one kind in one island.
   struct Batch {
-    const Joints* joints;
+    const BasicJoints<S>* joints;
     Role role;
     int first;
     int count;
@@ -97,7 +103,7 @@ struct Model {
     int from;
     int to;
     int rotation;
-    Vec arm;
+    Vector<S, 3> arm;
   };
   struct PlanarLever {
     int from;
@@ -114,8 +120,8 @@ struct Model {
   /// The equations of the joints, and which gradient of which moves what.
   struct Rows {
     std::vector<Role> roles;
-    std::vector<char> left_out;      ///< rows that depend on others
-    std::vector<double> compliance;  ///< of damping rows: 2 / c; empty where there are none
+    std::vector<char> left_out;  ///< rows that depend on others
+    std::vector<S> compliance;   ///< of damping rows: 2 / c; empty where there are none
     std::vector<Batch> batches;
     std::vector<Entry> linear_entries, rotation_entries;
     std::vector<int> factor_entries;  ///< of each linear factor, where its entries begin
@@ -138,11 +144,11 @@ struct Model {
 
   /// Effects of one kind.
   struct Acting {
-    std::unique_ptr<Effects> effects;
+    std::unique_ptr<BasicEffects<S>> effects;
     int switched_by;
   };
 
-  std::vector<std::unique_ptr<Joints>> joints;
+  std::vector<std::unique_ptr<BasicJoints<S>>> joints;
   std::vector<Acting> effects;
   Switches switches;
   Places places;
@@ -159,14 +165,15 @@ struct Model {
   template <class T> bool is_on(const T& each) const { return switches.on[std::size_t(each.switched_by)] != 0; }
 
   /// Puts points fixed in bodies where these are.
-  void place_arms(Configuration& at, const Range& arms, const Range& planar_arms) const;
+  void place_arms(BasicConfiguration<S>& at, const Range& arms, const Range& planar_arms) const;
   /// What the effects put on factors.
-  void act(const Configuration& at, Loads& loads) const;
+  void act(const BasicConfiguration<S>& at, BasicLoads<S>& loads) const;
   /// Covectors along which the rows of an island react at a node, and what their round-off is relative to.
-  void react(const Configuration& at, const Island& island, std::vector<Vec>& gradients,
+  void react(const BasicConfiguration<S>& at, const Island& island, std::vector<Vector<S, 3>>& gradients,
              std::vector<RowSize>& sizes) const;
   /// Gradients of the rows of an island at the target of an arrow.
-  void find_gradients(const SceneArrow& motion, const Island& island, std::vector<Vec>& gradients) const;
+  void find_gradients(const BasicSceneArrow<S>& motion, const Island& island,
+                      std::vector<Vector<S, 3>>& gradients) const;
 
   using Counts = std::function<bool(Role)>;
   /// The matrix D W D^T, where D has the gradients of the rows whose role `counts`, and W is diagonal and has the
@@ -180,7 +187,8 @@ struct Model {
 
  private:
   /// Gradients along points fixed in bodies become those along their motions.
-  void pull_back(const Configuration& at, const Island& island, std::vector<Vec>& gradients) const;
+  void pull_back(const BasicConfiguration<S>& at, const Island& island, std::vector<Vector<S, 3>>& gradients) const;
 };
+using Model = BasicModel<>;
 
 }  // namespace lagroid::multibody

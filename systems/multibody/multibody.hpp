@@ -65,6 +65,10 @@ class Multibody {
   StepReport advance_by(double size);
 
   const SceneState& state() const { return state_; }
+  /// What the scene is while it moves.
+  const Model& model() const { return model_; }
+  /// Of linear factors, on the arrow that led here by the last step.
+  const std::vector<Vec>& displacements() const { return workspace_.displacement; }
   /// Goes on from a state with the same bits. Throws std::invalid_argument where it is none of this scene.
   void restore(const SceneState& state);
   /// Visits the state.

@@ -36,11 +36,11 @@ std::size_t bytes_of_guess(const SceneState::Guess& g) {
 
 }  // namespace
 
-bool SceneState::fits(const SceneState& other) const {
+template <> bool SceneState::fits(const SceneState& other) const {
   return control.has_value() == other.control.has_value() && lengths_of(*this) == lengths_of(other);
 }
 
-void SceneState::serialize(NumberArchive& archive) {
+template <> void SceneState::serialize(NumberArchive& archive) {
   archive(index, step, time_compensation, dissipated, at.time, at.x, at.attitude, attitude);
   archive(place_compensation, momentum, momentum_compensation, spin, spin_compensation, guess, stages);
   if (control) archive(*control);
@@ -48,7 +48,7 @@ void SceneState::serialize(NumberArchive& archive) {
   for (RowSize& size : sizes) archive(size.terms, size.slope);
 }
 
-std::size_t SceneState::memory() const {
+template <> std::size_t SceneState::memory() const {
   std::size_t bytes = bytes_of(at.x, at.attitude, at.arm, attitude, place_compensation, momentum, momentum_compensation,
                                spin, spin_compensation, stages, loads.on, loads.torque, gradients, sizes, precision);
   bytes += bytes_of_guess(guess);

@@ -49,11 +49,13 @@ struct Pendulum : MechanicalSystem<Pendulum, 1> {
   }
 
   /// Of sigma = (w0^2 + w^2)^(-1/2), w = q', w0^2 = |g| / l.
-  double time_scale_rate(const State<Pair<1>>& s) const {
+  template <class S> S time_scale_rate(const Vector<S, 1>& q, const Vector<S, 1>& p) const {
     using std::sin;
-    const double w = s.momentum(0) / mass();
-    return w * gravity / length * sin(s.object(0)) / (std::abs(gravity) / length + w * w);
+    const S w = p(0) / mass<S>();
+    const ParameterScalar<S> square = varied<S>(gravity) / varied<S>(length);
+    return w * square * sin(q(0)) / (square * (gravity < 0 ? -1.0 : 1.0) + w * w);
   }
+  double time_scale_rate(const State<Pair<1>>& s) const { return time_scale_rate(s.object, s.momentum); }
 
   std::vector<Quantity<Pendulum>> quantities() const { return {energy_quantity()}; }
 };

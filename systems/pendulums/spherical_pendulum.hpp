@@ -87,10 +87,12 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   State<Pair<3>> reference(const State<Pair<3>>& start, double t) const;
 
   /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = p / (m l) the angular velocity, w0^2 = |g| / l.
-  double time_scale_rate(const State<Pair<3>>& s) const {
-    const double unit = bob_mass * length;
-    return bob_mass * gravity * s.momentum(2) / (std::abs(gravity) / length * unit * unit + s.momentum.squaredNorm());
+  template <class S> S time_scale_rate(const Vector<S, 3>&, const Vector<S, 3>& p) const {
+    const ParameterScalar<S> weight = varied<S>(bob_mass) * varied<S>(gravity);
+    const ParameterScalar<S> size = weight * varied<S>(bob_mass) * varied<S>(length) * (gravity < 0 ? -1.0 : 1.0);
+    return p(2) * weight / (p.squaredNorm() + size);
   }
+  double time_scale_rate(const State<Pair<3>>& s) const { return time_scale_rate(s.object, s.momentum); }
 
   /// Revolutions about the vertical.
   static constexpr int loops = 1;

@@ -83,12 +83,21 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   double kovalevskaya_integral(const State<GroupoidType>& s) const;
 
   /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = I^{-1} M, w0^2 = |weight| / max I.
-  double time_scale_rate(const State<GroupoidType>& s) const {
-    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
-    const Vector<double, 3> torque = s.momentum.cross(w) + s.object.cross(weight);
-    const double size = weight.norm() / inertia.maxCoeff() + w.squaredNorm();
-    return size > 0 ? -w.dot(torque.cwiseQuotient(inertia)) / size : 0;
+  template <class S> S time_scale_rate(const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
+    using std::sqrt;
+    const auto& moments = varied<S>(inertia);
+    const auto& arm = varied<S>(weight);
+    const Vector<S, 3> w(mu(0) / moments(0), mu(1) / moments(1), mu(2) / moments(2));
+    const Vector<S, 3> load(S(arm(0)), S(arm(1)), S(arm(2)));
+    const Vector<S, 3> torque = mu.cross(w) + v.cross(load);
+    Eigen::Index largest = 0;
+    inertia.maxCoeff(&largest);
+    S size = w.squaredNorm();
+    if (weight.squaredNorm() > 0) size += sqrt(load.squaredNorm()) / moments(largest);
+    if (!(size > S(0.0))) return S(0.0);
+    return -(w(0) * torque(0) / moments(0) + w(1) * torque(1) / moments(1) + w(2) * torque(2) / moments(2)) / size;
   }
+  double time_scale_rate(const State<GroupoidType>& s) const { return time_scale_rate(s.object, s.momentum); }
 
   /// The rotation by h I^{-1} M, exact to second order in h.
   Step<HeavyTop> first_guess(const State<GroupoidType>& s) const {

@@ -62,11 +62,15 @@ struct RigidBody : System<RigidBody, SO3> {
   State<SO3> reference(const State<SO3>& start, Matrix<double, 3, 3>& attitude, double t) const;
 
   /// Of sigma = 1 / |w|, w = I^{-1} M.
-  double time_scale_rate(const State<SO3>& s) const {
-    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
-    const double size = w.squaredNorm();
-    return size > 0 ? -w.dot(s.momentum.cross(w).cwiseQuotient(inertia)) / size : 0;
+  template <class S> S time_scale_rate(const Vector<S, 0>&, const Vector<S, 3>& mu) const {
+    const auto& moments = varied<S>(inertia);
+    const Vector<S, 3> w(mu(0) / moments(0), mu(1) / moments(1), mu(2) / moments(2));
+    const Vector<S, 3> torque = mu.cross(w);
+    const S size = w.squaredNorm();
+    if (!(size > S(0.0))) return S(0.0);
+    return -(w(0) * torque(0) / moments(0) + w(1) * torque(1) / moments(1) + w(2) * torque(2) / moments(2)) / size;
   }
+  double time_scale_rate(const State<SO3>& s) const { return time_scale_rate(s.object, s.momentum); }
 
   /// The rotation by h I^{-1} M, exact to second order in h.
   Step<RigidBody> first_guess(const State<SO3>& s) const {

@@ -3,8 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -20,7 +25,10 @@ TEST_F(Control, EveryExampleFindsAMinimum) {
     if (entry.path().extension() != ".toml") continue;
     ++examples;
     const std::string name = entry.path().stem();
-    const Outcome r = run(scene(name) + " --json --set horizon.stages=40");
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const bool has_phases = text.find("[[phase]]") != std::string::npos;
+    const Outcome r = run(scene(name) + " --json" + (has_phases ? "" : " --set horizon.stages=40"));
     ASSERT_EQ(r.code, 0) << name << r.err << r.out;
     const auto found = nlohmann::json::parse(r.out);
     EXPECT_EQ(found.at("status"), "converged") << name;
@@ -106,6 +114,98 @@ TEST_F(Control, WhatCannotBeIsTypedAndNamed) {
   EXPECT_EQ(found.at("status"), "infeasible");
   EXPECT_FALSE(found.at("violated").empty());
   EXPECT_NE(r.err.find("relax the constraints"), std::string::npos) << r.err;
+}
+
+/// The rows of a trajectory, an empty cell as zero; first its header.
+std::pair<std::string, std::vector<std::vector<double>>> rows_of(const fs::path& folder) {
+  std::ifstream file(folder / "trajectory.csv");
+  std::string header;
+  std::getline(file, header);
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream cells(line);
+    std::vector<double>& row = rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell.empty() ? 0 : std::stod(cell));
+  }
+  return {header, rows};
+}
+
+// Two impulses in the limit of a large thrust: 0.1816 of velocity, at a thrust of 0.1.
+TEST_F(Control, ThrustCoastThrustFindsHowLongEachLasts) {
+  const fs::path out = folder_ / "coast";
+  const Outcome r = run(scene("low_thrust_coast") + " --json --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto found = nlohmann::json::parse(r.out);
+  const auto& phases = found.at("phases");
+  ASSERT_EQ(phases.size(), 3U);
+  EXPECT_EQ(phases[1].at("name"), "coast");
+  EXPECT_EQ(phases[1].at("stages"), 40);
+  const double thrust = phases[0].at("duration").get<double>() + phases[2].at("duration").get<double>();
+  EXPECT_NEAR(found.at("cost").get<double>(), thrust, 1e-9);
+  EXPECT_GT(thrust, 1.816);
+  EXPECT_LT(thrust, 1.83);
+  const auto [header, rows] = rows_of(out);
+  EXPECT_EQ(header.substr(header.rfind(',')), ",phase");
+  ASSERT_EQ(rows.size(), 81U);
+  for (std::size_t k = 20; k < 60; ++k) {
+    EXPECT_EQ(rows[k][5], 0) << k;
+    EXPECT_EQ(rows[k][6], 0) << k;
+  }
+  EXPECT_NEAR(std::hypot(rows.back()[1], rows.back()[2]), 1.5, 1e-9);
+  std::ifstream plot(out / "plot.gp");
+  const std::string script{std::istreambuf_iterator<char>(plot), {}};
+  EXPECT_NE(script.find("set label 'coast'"), std::string::npos);
+}
+
+// Two right turns and a line between them, of pi / 2 and the distance of their centers, to the gate at (2, y); then a
+// left turn and a line that points to the center of the circle, at (6, 3).
+TEST_F(Control, AGateIsPassedWhereTheWayIsShortest) {
+  const fs::path out = folder_ / "gate";
+  const Outcome r = run(scene("through_a_gate") + " --json --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto found = nlohmann::json::parse(r.out);
+  double shortest = 1e9;
+  for (double y = 1; y < 2; y += 1e-4) {
+    const double to_the_gate = std::acos(-1.0) / 2 + std::hypot(1, y - 1);
+    const double apart = std::hypot(4, 2 - y);  // of the circle's center from that of the left turn
+    const double to_the_circle = std::atan2(2 - y, 4) + std::asin(1 / apart) + std::sqrt(apart * apart - 1) - 1;
+    shortest = std::min(shortest, to_the_gate + to_the_circle);
+  }
+  EXPECT_NEAR(found.at("cost").get<double>(), shortest, 1e-3);
+  const auto rows = rows_of(out).second;
+  ASSERT_EQ(rows.size(), 121U);
+  EXPECT_NEAR(rows[60][1], 2, 1e-10);
+  EXPECT_NEAR(rows[60][3], 0, 1e-10);
+  EXPECT_NEAR(std::hypot(rows[120][1] - 6, rows[120][2] - 3), 1, 1e-10);
+  const Outcome check = run("check " + example("control/through_a_gate"));
+  EXPECT_EQ(check.code, 0) << check.out << check.err;
+  const Outcome by_ipopt = run(scene("through_a_gate") + " --json --set solver.method=ipopt");
+  if (by_ipopt.code == 2) GTEST_SKIP() << "a build without IPOPT";
+  ASSERT_EQ(by_ipopt.code, 0) << by_ipopt.err;
+  EXPECT_NEAR(nlohmann::json::parse(by_ipopt.out).at("cost").get<double>(), found.at("cost").get<double>(), 1e-8);
+}
+
+TEST_F(Control, MistakesOfPhasesAndEndsAreOneLine) {
+  const auto refused = [&](const std::string& name, const std::string& set, const std::string& words) {
+    const Outcome r = run(scene(name) + " --set '" + set + "'");
+    EXPECT_EQ(r.code, 2) << set << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << set << ": " << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  };
+  refused("through_a_gate", "horizon.duration=3", "leave out [horizon]");
+  refused("through_a_gate", "phase.1.through.x=1", "the last phase ends where [boundary] says");
+  refused("through_a_gate", "phase.0.through.z=1", "unknown");
+  refused("through_a_gate", "phase.1.name=\"to the gate\"", "the name of another phase");
+  refused("through_a_gate", "phase.0.bounds.curvature=[1.0, -1.0]", "1 is not below -1");
+  refused("through_a_gate", "phase.0.duration=0", "positive");
+  refused("through_a_gate", "phase.0.range=[4.0, 5.0]", "is not between 4 and 5");
+  refused("through_a_gate", "phase.0.parameters.speed=2", "unknown");
+  refused("through_a_gate", "boundary.end_on=[\"x + z\"]", "boundary.end_on");
+  refused("through_a_gate", "boundary.free_end=[\"heading\"]", "is no number of the state; they are x, y, angle");
+  refused("through_a_gate", "boundary.free_end=[]", "name in free_end what may differ from the end");
+  refused("through_a_gate", "loop.samples=3", "looks ahead in one phase");
+  refused("control_loop", "boundary.free_end=[\"w1\"]", "leave out boundary.free_start");
+  refused("keep_out", "boundary.free_end=[\"r1\"]", "an attitude is given by all three of its numbers");
 }
 
 TEST_F(Control, IpoptFindsTheSameInTheSameFiles) {

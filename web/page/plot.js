@@ -13,17 +13,23 @@ export function ticks(least, most, about, nearest = 0) {
   return all;
 }
 
-function range(lists) {
-  let [least, most] = [Infinity, -Infinity];
+/** Of what is drawn of the lists, and of places that are drawn as they are, with a margin. */
+function range(lists, drawn, places) {
+  let [least, most] = [Math.min(...places), Math.max(...places)];
   for (const list of lists)
-    for (const value of list)
-      if (Number.isFinite(value)) [least, most] = [Math.min(least, value), Math.max(most, value)];
+    for (let row = 0; row < list.length; ++row) {
+      const value = drawn(list[row]);
+      if (!Number.isFinite(value)) continue;
+      if (value < least) least = value;
+      if (value > most) most = value;
+    }
   if (least > most) return [0, 1];
   const margin = (most - least) * 0.05 || Math.max(1e-12, Math.abs(most) * 0.1);
   return [least - margin, most + margin];
 }
 
 const reach = 14; // px, within which a handle is taken
+const fine = 0.4; // px, below which nobody sees that a curve moves
 const power = (value) => `1e${Math.round(value)}`;
 const label = (value, step) => {
   const small = Math.abs(value) < step / 1e6 ? 0 : value;
@@ -80,22 +86,25 @@ export class Plot {
     canvas.classList.toggle("movable", handles.length > 0);
     const scale = window.devicePixelRatio || 1;
     const { clientWidth: width, clientHeight: height } = canvas;
-    canvas.width = Math.round(width * scale);
-    canvas.height = Math.round(height * scale);
     const paint = canvas.getContext("2d");
+    // A canvas of another size is a new one, which costs more than what is drawn in it.
+    const size = [width, height].map((length) => Math.round(length * scale));
+    if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
     paint.setTransform(scale, 0, 0, scale, 0, 0);
-    const [ink, faint] = ["--ink", "--line"].map((name) => getComputedStyle(canvas).getPropertyValue(name));
-    const scaled = panel.log ? Math.log10 : (value) => value;
-    const less = (values, offset) => (values ? Array.from(values, (value) => scaled(value - (offset || 0))) : []);
+    paint.clearRect(0, 0, width, height);
+    const style = getComputedStyle(canvas);
+    const [ink, faint] = ["--ink", "--line"].map((name) => style.getPropertyValue(name));
+    const drawn = (offset = 0) => (panel.log ? (value) => Math.log10(value - offset) : (value) => value - offset);
+    const [x_drawn, y_drawn] = [drawn(panel.x_offset), drawn(panel.y_offset)];
     const curves = runs.flatMap((columns, which) =>
       panel.curves.map((name, i) => ({
         which,
         colour: palette[(i + which * panel.curves.length) % palette.length],
-        x: less(columns[panel.x_of ? panel.x_of(name) : panel.x], panel.x_offset),
-        y: less(columns[name], panel.y_offset),
+        x: columns[panel.x_of ? panel.x_of(name) : panel.x] ?? [],
+        y: columns[name] ?? [],
       })));
-    let [left, right] = range([...curves.map(({ x }) => x), handles.map(({ x }) => x)]);
-    let [low, high] = range([...curves.map(({ y }) => y), handles.map(({ y }) => y)]);
+    let [left, right] = range([...new Set(curves.map(({ x }) => x))], x_drawn, handles.map(({ x }) => x));
+    let [low, high] = range(curves.map(({ y }) => y), y_drawn, handles.map(({ y }) => y));
     const box = { left: 62, top: 6, width: width - 72, height: height - 40 };
     if (panel.equal_axes) {
       const unit = Math.max((right - left) / box.width, (high - low) / box.height);
@@ -105,10 +114,8 @@ export class Plot {
     }
     if (this.held) [left, right, low, high] = this.shown;
     this.shown = [left, right, low, high];
-    const at = (x, y) => [
-      box.left + ((x - left) / (right - left)) * box.width,
-      box.top + box.height - ((y - low) / (high - low)) * box.height,
-    ];
+    const [x_unit, y_unit, bottom] = [box.width / (right - left), box.height / (high - low), box.top + box.height];
+    const at = (x, y) => [box.left + (x - left) * x_unit, bottom - (y - low) * y_unit];
     this.at = at;
     this.back = (px, py) => [
       left + ((px - box.left) / box.width) * (right - left),
@@ -142,18 +149,26 @@ export class Plot {
       paint.strokeStyle = colour;
       paint.setLineDash(which === 0 ? [] : [6, 4]);
       paint.beginPath();
-      let drawn = false;
-      x.forEach((value, row) => {
-        if (!Number.isFinite(y[row])) return void (drawn = false);
-        paint[drawn ? "lineTo" : "moveTo"](...at(value, y[row]));
-        drawn = true;
-      });
+      let [px, py] = [NaN, NaN]; // where the pen is
+      for (let row = 0; row < x.length; ++row) {
+        const qx = box.left + (x_drawn(x[row]) - left) * x_unit;
+        const qy = bottom - (y_drawn(y[row]) - low) * y_unit;
+        if (!Number.isFinite(qx) || !Number.isFinite(qy)) {
+          px = NaN;
+          continue;
+        }
+        if (row + 1 < x.length && Math.abs(qx - px) < fine && Math.abs(qy - py) < fine) continue;
+        if (Number.isNaN(px)) paint.moveTo(qx, qy);
+        else paint.lineTo(qx, qy);
+        px = qx;
+        py = qy;
+      }
       paint.stroke();
       if (!panel.log) continue;
       paint.fillStyle = colour;
       x.forEach((value, row) => {
         paint.beginPath();
-        paint.arc(...at(value, y[row]), 2.5, 0, 2 * Math.PI);
+        paint.arc(...at(x_drawn(value), y_drawn(y[row])), 2.5, 0, 2 * Math.PI);
         paint.fill();
       });
     }

@@ -17,5 +17,8 @@ const ControlProblem& steered_car_problem();
 const ControlProblem& satellite_turn_problem();
 const ControlProblem& pendulum_problem();
 const ControlProblem& rigid_body_problem();
+const ControlProblem& two_link_arm_problem();
+const ControlProblem& falling_cat_problem();
+const ControlProblem& rolled_ball_problem();
 
 }  // namespace lagroid::app

@@ -153,7 +153,7 @@ void InteriorPoint::newton_side(const StageRows& equality, const StageRows& gap)
 double InteriorPoint::change_of_inequality(long stage, int i) const {
   const int n = sizes_.node;
   const double* row = derivatives_.inequality[stage] + i * sizes_.variables();
-  double change = row[sizes_.at_duration()] * step_.primal.duration;
+  double change = row[sizes_.at_duration()] * step_.primal.durations[std::size_t(sizes_.phase_of(stage))];
   for (int q = 0; q < n; ++q)
     change += row[q] * step_.primal.nodes[stage][q] + row[n + q] * step_.primal.nodes[stage + 1][q];
   for (int q = 0; q < sizes_.control; ++q) change += row[sizes_.at_control() + q] * step_.primal.controls[stage][q];

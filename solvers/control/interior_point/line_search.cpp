@@ -43,7 +43,7 @@ double InteriorPoint::slope() const {
     const double* g = derivatives_.gradient[k];
     for (int q = 0; q < n; ++q) sum += g[q] * step_.primal.nodes[k][q] + g[n + q] * step_.primal.nodes[k + 1][q];
     for (int q = 0; q < sizes_.control; ++q) sum += g[sizes_.at_control() + q] * step_.primal.controls[k][q];
-    sum += g[sizes_.at_duration()] * step_.primal.duration;
+    sum += g[sizes_.at_duration()] * step_.primal.durations[std::size_t(sizes_.phase_of(k))];
     for (int i = 0; i < sizes_.inequality; ++i) sum -= barrier_ * slack_step_[k][i] / slacks_[k][i];
   }
   return sum;

@@ -1,5 +1,5 @@
 // How an iteration ended, in numbers and in words.
-#include <lagroid/solvers/control/interior_point.hpp>
+#include <lagroid/solvers/control/interior_point/failure.hpp>
 
 #include <fmt/format.h>
 
@@ -17,42 +17,48 @@ void InteriorPoint::describe() {
   for (long k = 0; k < sizes_.stages; ++k) report_.cost += values_.cost[k][0];
 }
 
-/// Where it did not converge: what is violated most, and what to do.
 void InteriorPoint::explain() {
-  switch (report_.status) {
+  if (report_.converged()) return;
+  report_.message = advice_of(report_.status, options_.max_iterations);
+  report_.worst = worst_violations(sizes_, values_, options_.tolerance);
+}
+
+std::string advice_of(ControlStatus status, int max_iterations) {
+  switch (status) {
     case ControlStatus::converged:
-      return;
+      break;
     case ControlStatus::infeasible:
-      report_.message =
-          "the violation of the constraints has a local minimum here; start from another trajectory, "
-          "or relax the constraints that are listed";
-      break;
+      return "the violation of the constraints has a local minimum here; start from another trajectory, or relax the "
+             "constraints that are listed";
     case ControlStatus::stagnated:
-      report_.message =
-          "no step is better, though the KKT residual is above the tolerance: scale the cost, give a "
-          "tolerance that rounding allows, or start elsewhere";
-      break;
+      return "no step is better, though the KKT residual is above the tolerance: scale the cost, give a tolerance that "
+             "rounding allows, or start elsewhere";
     case ControlStatus::not_converged:
-      report_.message = fmt::format("not converged in {} iterations; start from another trajectory, or allow more",
-                                    options_.max_iterations);
-      break;
+      return fmt::format("not converged in {} iterations; start from another trajectory, or allow more",
+                         max_iterations);
     case ControlStatus::singular:
-      report_.message = "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
-      break;
+      return "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
     case ControlStatus::not_finite:
-      report_.message = "a cost or constraint of the trajectory to start from is not finite; give another";
-      break;
+      return "a cost or constraint of the trajectory to start from is not finite; give another";
   }
-  for (long k = 0; k < sizes_.stages; ++k) {
-    for (int i = 0; i < sizes_.equalities_of(k); ++i)
-      report_.worst.push_back({k, i, true, std::abs(values_.equality[k][i])});
-    for (int i = 0; i < sizes_.inequality; ++i) report_.worst.push_back({k, i, false, values_.inequality[k][i]});
+  return "";
+}
+
+std::vector<ConstraintViolation> worst_violations(const TranscriptionSizes& sizes, const StageValues& values,
+                                                  double tolerance) {
+  std::vector<ConstraintViolation> out;
+  const auto take = [&](const ConstraintViolation& each) {
+    if (each.amount > tolerance) out.push_back(each);
+  };
+  for (long k = 0; k < sizes.stages; ++k) {
+    for (int i = 0; i < sizes.equalities_of(k); ++i) take({k, i, true, std::abs(values.equality[k][i])});
+    for (int i = 0; i < sizes.inequality; ++i) take({k, i, false, values.inequality[k][i]});
   }
-  const auto most = std::min<std::size_t>(5, report_.worst.size());
-  std::partial_sort(report_.worst.begin(), report_.worst.begin() + long(most), report_.worst.end(),
+  const auto most = std::min<std::size_t>(5, out.size());
+  std::partial_sort(out.begin(), out.begin() + long(most), out.end(),
                     [](const auto& a, const auto& b) { return a.amount > b.amount; });
-  report_.worst.resize(most);
-  std::erase_if(report_.worst, [&](const auto& each) { return !(each.amount > options_.tolerance); });
+  out.resize(most);
+  return out;
 }
 
 }  // namespace lagroid

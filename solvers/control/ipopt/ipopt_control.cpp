@@ -1,3 +1,4 @@
+#include <lagroid/solvers/control/interior_point/failure.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_program.hpp>
 #include <lagroid/solvers/control/stage_kkt.hpp>
@@ -34,43 +35,12 @@ ControlStatus status_of(Ipopt::ApplicationReturnStatus ended) {
   }
 }
 
-std::string message_of(ControlStatus status, Ipopt::ApplicationReturnStatus ended) {
-  switch (status) {
-    case ControlStatus::converged:
-      return "";
-    case ControlStatus::infeasible:
-      return "IPOPT: the violation of the constraints has a local minimum here; start from another trajectory, or "
-             "relax "
-             "the constraints that are listed";
-    case ControlStatus::stagnated:
-      return "IPOPT: no step is better, though the tolerance is not reached: scale the cost, give a tolerance that "
-             "rounding allows, or start elsewhere";
-    case ControlStatus::singular:
-      return "IPOPT: no shift makes the KKT matrix that of a minimum: are constraints given twice?";
-    case ControlStatus::not_finite:
-      return "IPOPT: a cost or constraint is not finite; start from another trajectory";
-    case ControlStatus::not_converged:
-      break;
-  }
-  return fmt::format(
-      "IPOPT: not converged (its return code is {}); start from another trajectory, or allow more iterations",
-      int(ended));
-}
-
-/// The largest five of what is violated.
-std::vector<ConstraintViolation> worst_of(const TranscriptionSizes& sizes, const StageValues& values,
-                                          double tolerance) {
-  std::vector<ConstraintViolation> all;
-  const auto take = [&](const ConstraintViolation& each) {
-    if (each.amount > tolerance) all.push_back(each);
-  };
-  for (long k = 0; k < sizes.stages; ++k) {
-    for (int i = 0; i < sizes.equalities_of(k); ++i) take({k, i, true, std::abs(values.equality[k][i])});
-    for (int i = 0; i < sizes.inequality; ++i) take({k, i, false, values.inequality[k][i]});
-  }
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.amount > b.amount; });
-  all.resize(std::min<std::size_t>(5, all.size()));
-  return all;
+/// IPOPT stops before the last iteration for reasons of its own, too: then its return code says which.
+std::string message_of(ControlStatus status, Ipopt::ApplicationReturnStatus ended, int max_iterations) {
+  if (status == ControlStatus::converged) return "";
+  if (status == ControlStatus::not_converged && ended != Ipopt::Maximum_Iterations_Exceeded)
+    return fmt::format("IPOPT: ended with return code {}; start from another trajectory", int(ended));
+  return "IPOPT: " + advice_of(status, max_iterations);
 }
 
 /// Whether the KKT matrix has the inertia of a strict minimum, z_i / -gamma_i taken as it stands.
@@ -130,8 +100,8 @@ IpoptSolution solve_by_ipopt(TrajectoryChart& chart, const ControlOptions& optio
   report.complementarity = left.complementarity;
   report.is_strict_minimum =
       report.converged() && is_strict_minimum(transcription, values, derivatives, out.inequality_multipliers);
-  report.message = message_of(report.status, ended);
-  if (!report.converged()) report.worst = worst_of(sizes, values, options.tolerance);
+  report.message = message_of(report.status, ended, options.max_iterations);
+  if (!report.converged()) report.worst = worst_violations(sizes, values, options.tolerance);
   return out;
 }
 

@@ -34,14 +34,28 @@ ControlProgram::ControlProgram(TrajectoryChart& chart, Blocks blocks)
   half_.resize(d * d);
   for (long k = 0; k <= stages; ++k) {
     if (k > 0)
-      for (int i = 0; i < sizes_.control; ++i) control_place_.push_back(unknowns_++);
+      for (int i = 0; i < sizes_.control; ++i)
+        control_place_.push_back(sizes_.control_is_fixed(k - 1, i) ? -1 : unknowns_++);
     for (int i = 0; i < sizes_.node; ++i) {
       const bool is_free = (k > 0 || transcription().free_start()[std::size_t(i)]) &&
                            (k < stages || transcription().free_end()[std::size_t(i)]);
       node_place_.push_back(is_free ? unknowns_++ : -1);
     }
   }
-  if (transcription().duration_is_free()) duration_place_ = unknowns_++;
+  for (const TranscriptionPhase& each : sizes_.phases)
+    duration_place_.push_back(each.duration_is_free ? unknowns_++ : -1);
+  first_row_.push_back(0);
+  for (long k = 0; k < stages; ++k) first_row_.push_back(first_row_.back() + sizes_.equalities_of(k) + before_bounds_);
+  int bound = before_bounds_;
+  for (int i = 0; i < sizes_.control; ++i)
+    for (const bool is_upper : {true, false}) {
+      const auto is_bounded = [&](const TranscriptionPhase& phase) {
+        const TrajectoryChart::Range range = chart_.control_range(phase.end - 1, i);
+        return std::isfinite(is_upper ? range.most : range.least) && range.least < range.most;
+      };
+      const bool any = std::any_of(sizes_.phases.begin(), sizes_.phases.end(), is_bounded);
+      bound_row_.push_back(any ? bound++ : -1);
+    }
   is_in_rows_.assign(std::size_t(sizes_.equality + before_bounds_) * d, blocks == Blocks::whole);
   is_in_hessian_.assign(d * d, blocks == Blocks::whole);
   if (blocks == Blocks::sparse) find_entries();
@@ -51,16 +65,12 @@ ControlProgram::ControlProgram(TrajectoryChart& chart, Blocks blocks)
     if (is_in_hessian_[at] != 0 && at % d <= at / d) in_hessian_.emplace_back(int(at / d), int(at % d));
 }
 
-ControlProgram::Index ControlProgram::first_row(long stage) const {
-  return Index(stage) * (sizes_.equality - sizes_.end_equality + before_bounds_);
-}
-
 ControlProgram::Index ControlProgram::place(long stage, int variable) const {
   const int n = sizes_.node;
   if (variable < 2 * n) return node_place_[std::size_t(stage * n + variable)];
   if (variable < sizes_.at_duration())
     return control_place_[std::size_t(stage * sizes_.control + variable - sizes_.at_control())];
-  return duration_place_;
+  return duration_place_[std::size_t(sizes_.phase_of(stage))];
 }
 
 /// Marks what is not zero at a trajectory bent at random, of multipliers at random.
@@ -69,7 +79,7 @@ void ControlProgram::find_entries() {
   std::uniform_real_distribution<double> uniform(0.5, 1.5);
   std::vector<Number> x(std::size_t(unknowns_), 0);
   for (Number& each : x) each = 0.1 * (uniform(generator) - 1);
-  std::vector<Number> multipliers(std::size_t(first_row(sizes_.stages) + sizes_.end_equality));
+  std::vector<Number> multipliers(std::size_t(first_row(sizes_.stages)));
   for (Number& each : multipliers) each = uniform(generator);
   move_to(x.data(), true);
   evaluate_hessians(1, multipliers.data());
@@ -94,8 +104,10 @@ void ControlProgram::move_to(const Number* x, bool is_new) {
   has_values_ = has_derivatives_ = false;
   for (std::size_t i = 0; i < node_place_.size(); ++i)
     at_.nodes.numbers()[i] = node_place_[i] < 0 ? 0 : x[node_place_[i]];
-  for (std::size_t i = 0; i < control_place_.size(); ++i) at_.controls.numbers()[i] = x[control_place_[i]];
-  if (duration_place_ >= 0) at_.duration = x[duration_place_];
+  for (std::size_t i = 0; i < control_place_.size(); ++i)
+    at_.controls.numbers()[i] = control_place_[i] < 0 ? 0 : x[control_place_[i]];
+  for (std::size_t p = 0; p < duration_place_.size(); ++p)
+    at_.durations[p] = duration_place_[p] < 0 ? 0 : x[duration_place_[p]];
   chart_.stand_at(at_);
 }
 
@@ -198,7 +210,7 @@ void ControlProgram::pull_back_hessian(long stage, double of_cost) {
 bool ControlProgram::get_nlp_info(Index& variables, Index& rows, Index& in_jacobian, Index& in_hessian,
                                   IndexStyleEnum& style) {
   variables = unknowns_;
-  rows = first_row(sizes_.stages) + sizes_.end_equality;
+  rows = first_row(sizes_.stages);
   in_jacobian = in_hessian = 0;
   for (long k = 0; k < sizes_.stages; ++k) {
     for_each_in_rows(k, [&](Index, Index, int) { ++in_jacobian; });
@@ -216,6 +228,7 @@ bool ControlProgram::get_bounds_info(Index, Number* least, Number* most, Index, 
     for (int i = 0; i < sizes_.control; ++i) {
       const TrajectoryChart::Range range = chart_.control_range(k, i);
       const Index at = control_place_[std::size_t(k * sizes_.control + i)];
+      if (at < 0) continue;
       least[at] = std::max(range.least, -none);
       most[at] = std::min(range.most, none);
     }
@@ -327,12 +340,12 @@ void ControlProgram::finalize_solution(Ipopt::SolverReturn, Index, const Number*
   move_to(x, true);
   take(multipliers);
   for (long k = 0; k < sizes_.stages; ++k) {
-    int row = before_bounds_;
     for (int i = 0; i < sizes_.control; ++i) {
       const TrajectoryChart::Range range = chart_.control_range(k, i);
       const Index at = control_place_[std::size_t(k * sizes_.control + i)];
-      if (std::isfinite(range.most)) multipliers_[k][row++] = of_upper[at];
-      if (std::isfinite(range.least)) multipliers_[k][row++] = of_lower[at];
+      if (at < 0) continue;
+      if (std::isfinite(range.most)) multipliers_[k][bound_row_[std::size_t(2 * i)]] = of_upper[at];
+      if (std::isfinite(range.least)) multipliers_[k][bound_row_[std::size_t(2 * i + 1)]] = of_lower[at];
     }
   }
 }

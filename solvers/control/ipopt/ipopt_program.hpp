@@ -47,7 +47,7 @@ class ControlProgram final : public Ipopt::TNLP {
                          Ipopt::IpoptCalculatedQuantities*) override;
 
  private:
-  Index first_row(long stage) const;
+  Index first_row(long stage) const { return first_row_[std::size_t(stage)]; }
   /// The place of a stage's variable among the unknowns; -1 where it is fixed.
   Index place(long stage, int variable) const;
   const Transcription& transcription() const { return chart_.transcription(); }
@@ -87,7 +87,9 @@ class ControlProgram final : public Ipopt::TNLP {
   int before_bounds_ = 0;
   std::vector<Index> node_place_;  // of each component of each node
   std::vector<Index> control_place_;
-  Index duration_place_ = -1;
+  std::vector<Index> duration_place_;  // of each phase
+  std::vector<Index> first_row_;       // of each stage, and the count of all
+  std::vector<int> bound_row_;         // among a stage's multipliers: of each control's upper bound and lower one
   Index unknowns_ = 0;
 
   // Of a stage: (row, variable), the rows of gamma after all of phi; (variable, variable) of the lower triangle.

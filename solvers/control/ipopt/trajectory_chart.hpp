@@ -4,8 +4,8 @@
 ///
 ///     g_k -> tau(v_k)^{-1} g_k tau(v_{k+1}),    u_k -> u_k + du_k,    h -> h exp(t),
 ///
-/// of the trajectory where the chart has its origin. A Transcription has its derivatives along displacements of the
-/// trajectory where it stands; those by x follow through the retraction,
+/// t of each phase, of the trajectory where the chart has its origin. A Transcription has its derivatives along
+/// displacements of the trajectory where it stands; those by x follow through the retraction,
 ///
 ///     tau(v)^{-1} tau(v + e) = tau(a(e)),    a = D e + e^T Q e / 2 + ...,    df/dv = df/da D.
 ///
@@ -20,6 +20,7 @@
 #include <lagroid/solvers/control/transcription_of.hpp>
 
 #include <utility>
+#include <vector>
 
 namespace lagroid {
 
@@ -52,7 +53,10 @@ template <class Sys> class TrajectoryChartOf final : public TrajectoryChart {
   using G = typename Sys::GroupoidType;
 
   TrajectoryChartOf(const ControlTask<Sys>& task, ControlTrajectory<Sys> origin)
-      : task_(task), origin_(std::move(origin)), here_(task, origin_) {}
+      : task_(task),
+        phases_(phases_of(task, long(origin.arrows.size()))),
+        here_(task, std::move(origin)),
+        origin_(here_.trajectory()) {}
 
   const ControlTrajectory<Sys>& trajectory() const { return here_.trajectory(); }
   const Transcription& transcription() const override { return here_; }
@@ -86,16 +90,18 @@ template <class Sys> class TrajectoryChartOf final : public TrajectoryChart {
 
   Range control_range(long stage, int control) const override {
     const double u = origin_.controls[std::size_t(stage)](control);
-    return {task_.lower(control) - u, task_.upper(control) - u};
+    const ControlPhase<Sys>& phase = phases_[std::size_t(here_.sizes().phase_of(stage))];
+    return {phase.lower(control) - u, phase.upper(control) - u};
   }
-  int inequalities_before_bounds() const override { return Sys::inequalities; }
+  int inequalities_before_bounds() const override { return here_.before_bounds(); }
 
  private:
   static constexpr int n = Sys::dimension;
 
   ControlTask<Sys> task_;
-  ControlTrajectory<Sys> origin_;
+  std::vector<ControlPhase<Sys>> phases_;
   TranscriptionOf<Sys> here_;
+  ControlTrajectory<Sys> origin_;
 };
 
 }  // namespace lagroid

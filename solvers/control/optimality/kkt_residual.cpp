@@ -20,11 +20,14 @@ void lagrangian_gradient(const Transcription& transcription, const StageDerivati
   const int n = sizes.node;
   const int d = sizes.variables();
   set_all(out.nodes, 0);
-  out.duration = 0;
+  std::fill(out.durations.begin(), out.durations.end(), 0.0);
+  std::size_t phase = 0;
   for (long k = 0; k < sizes.stages; ++k) {
+    if (k == sizes.phases[phase].end) ++phase;
+    const int equalities = sizes.equalities_of(k);
     const auto component = [&](int q) {
       double sum = derivatives.gradient[k][q];
-      for (int i = 0; i < sizes.equalities_of(k); ++i) sum += costates[k][i] * derivatives.equality[k][i * d + q];
+      for (int i = 0; i < equalities; ++i) sum += costates[k][i] * derivatives.equality[k][i * d + q];
       for (int i = 0; i < sizes.inequality; ++i) sum += weights[k][i] * derivatives.inequality[k][i * d + q];
       return sum;
     };
@@ -33,13 +36,17 @@ void lagrangian_gradient(const Transcription& transcription, const StageDerivati
       out.nodes[k + 1][i] += component(n + i);
     }
     for (int i = 0; i < sizes.control; ++i) out.controls[k][i] = component(sizes.at_control() + i);
-    out.duration += component(sizes.at_duration());
+    const std::vector<bool>& fixed = sizes.phases[phase].control_is_fixed;
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+      if (fixed[i]) out.controls[k][i] = 0;
+    out.durations[phase] += component(sizes.at_duration());
   }
   for (int i = 0; i < n; ++i) {
     if (!transcription.free_start()[std::size_t(i)]) out.nodes[0][i] = 0;
     if (!transcription.free_end()[std::size_t(i)]) out.nodes[sizes.stages][i] = 0;
   }
-  if (!transcription.duration_is_free()) out.duration = 0;
+  for (std::size_t p = 0; p < sizes.phases.size(); ++p)
+    if (!sizes.phases[p].duration_is_free) out.durations[p] = 0;
 }
 
 double largest_violation(const TranscriptionSizes& sizes, const StageValues& values) {

@@ -32,7 +32,8 @@ template <class Sys> ControlTrajectory<Sys> halved(const ControlTask<Sys>& task,
   using G = typename Sys::GroupoidType;
   const G& groupoid = task.system.groupoid;
   ControlTrajectory<Sys> out;
-  out.step = path.step / 2;
+  out.start = path.start;
+  for (const PhaseSteps& each : path.phases) out.phases.push_back({2 * each.stages, each.step / 2});
   for (std::size_t k = 0; k < path.arrows.size(); ++k) {
     const ArrowOf<G>& g = path.arrows[k];
     const AlgebroidVector<G> half = groupoid.tau_inverse(g) / 2;
@@ -49,16 +50,20 @@ inline StageRows stage_rows(const std::vector<std::vector<double>>& of, int leng
   return out;
 }
 
-/// Of the costs on three grids, each twice as fine.
+/// Of the costs on three grids, each twice as fine; infinite where none was found.
 inline Law order_law(const double (&costs)[3], long stages, bool has_active_inequalities) {
   const double first = std::abs(costs[0] - costs[1]);
   const double second = std::abs(costs[1] - costs[2]);
   const double size = std::abs(costs[2]);
-  if (std::max(first, second) <= 1e-9 * size) return control_law("the cost does not depend on the grid", 0, 0, 3);
+  const bool all_solved = std::isfinite(costs[0] + costs[1] + costs[2]);
+  if (all_solved && std::max(first, second) <= 1e-9 * size)
+    return control_law("the cost does not depend on the grid", 0, 0, 3);
   if (!has_active_inequalities)
-    return control_law("the cost is of order two in the step", std::abs(std::log2(first / second) - 2), 0.25, 3);
+    return control_law("the cost is of order two in the step",
+                       all_solved ? std::abs(std::log2(first / second) - 2) : HUGE_VAL, 0.25, 3);
   const double spread = std::max(first, std::abs(costs[0] - costs[2]));
-  return control_law("the cost is of order two in envelope", spread * double(stages) * double(stages) / size, 100, 3);
+  return control_law("the cost is of order two in envelope",
+                     all_solved ? spread * double(stages) * double(stages) / size : HUGE_VAL, 100, 3);
 }
 
 }  // namespace detail
@@ -86,8 +91,10 @@ LawReport control_solution_laws(const ControlTask<Sys>& task, const ControlSolut
   for (std::size_t i = 0; i < z.numbers().size(); ++i)
     has_active = has_active || z.numbers()[i] > -values.inequality.numbers()[i];
   ControlSolution<Sys> finer = solution;
+  ControlOptions near = options;  // a large barrier parameter would lead away
+  near.first_barrier = std::min(options.first_barrier, options.resumed_barrier);
   for (double* cost : {costs + 1, costs + 2}) {
-    finer = solve_control(task, detail::halved(task, finer.trajectory), options);
+    finer = solve_control(task, detail::halved(task, finer.trajectory), near);
     *cost = finer.report.converged() ? finer.report.cost : HUGE_VAL;
   }
   report.laws.push_back(detail::order_law(costs, sizes.stages, has_active));

@@ -91,7 +91,7 @@ template <class H, int N> class HamiltonianModel : public FieldModel<Hamiltonian
   }
 
   Eigen::VectorXd start(unsigned seed) const override {
-    const auto& [hamiltonian, coordinates, dissipation] = this->fields();
+    const H& hamiltonian = this->hamiltonian();
     Eigen::VectorXd theta = Eigen::VectorXd::Zero(this->size());
     if constexpr (requires { hamiltonian.start(seed); }) theta.head(hamiltonian.size()) = hamiltonian.start(seed);
     const Eigen::VectorXd damping = this->fields().rayleigh().start(seed);

@@ -53,7 +53,10 @@ double largest_ratio(const Eigen::MatrixXd& first, const Eigen::MatrixXd& peak, 
 }
 
 Growth::Growth(const Eigen::MatrixXd& directions)
-    : first_(directions.cwiseAbs()), peak_(first_), added_(first_.colwise().maxCoeff().array() == 0) {}
+    : first_(directions.cwiseAbs()),
+      peak_(first_),
+      added_(first_.colwise().maxCoeff().array() == 0),
+      last_(first_.colwise().maxCoeff()) {}
 
 void Growth::after_a_step(const Eigen::MatrixXd& directions) {
   ++steps_;
@@ -63,8 +66,13 @@ void Growth::after_a_step(const Eigen::MatrixXd& directions) {
       continue;
     }
     const double steps = added_(j) ? double(steps_) : 1;
-    if (first_.col(j).maxCoeff() == 0) first_.col(j) = directions.col(j).cwiseAbs() / steps;
-    peak_.col(j) = peak_.col(j).cwiseMax(directions.col(j).cwiseAbs() / steps);
+    const Eigen::VectorXd now = directions.col(j).cwiseAbs() / steps;
+    // No step makes ten thousand million of one: what was there before was rounding.
+    constexpr double rounding = 1e-10;
+    const bool is_first = added_(j) && !(last_(j) > rounding * now.maxCoeff());
+    if (is_first || first_.col(j).maxCoeff() == 0) first_.col(j) = now;
+    peak_.col(j) = peak_.col(j).cwiseMax(now);
+    last_(j) = now.maxCoeff();
   }
 }
 

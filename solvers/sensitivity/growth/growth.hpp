@@ -54,6 +54,7 @@ class Growth {
   Eigen::MatrixXd first_;
   Eigen::MatrixXd peak_;
   Eigen::Array<bool, 1, Eigen::Dynamic> added_;  ///< columns that were zero at the start
+  Eigen::RowVectorXd last_;                      ///< the largest entry of each column, after the last step
   long steps_ = 0;
 };
 

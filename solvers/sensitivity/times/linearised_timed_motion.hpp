@@ -82,6 +82,7 @@ class LinearisedTimedMotion final : public LinearisedMotion {
   LinearisedTimedMotion(const Sys& system, const State<G>& start, const ArrowOf<G>& configuration,
                         const std::vector<std::string>& parameters, ObserveTimedNode<Sys> observe)
       : integrator_(system, start, configuration, std::make_unique<NewtonStep<Sys>>(), Steps::solver()),
+        in_part_(system, std::make_unique<NewtonStep<Sys>>()),
         extended_(Steps::extended(system)),
         places_(places_of_parameters(extended_.base, parameters)),
         members_(places_.members),
@@ -127,18 +128,20 @@ class LinearisedTimedMotion final : public LinearisedMotion {
   const LinearStep& stage(int) const override { return stage_; }
 
   NodeValues observe() const override {
-    const int time_direction = 2 * n + parameters();
-    const NodeValues here = detail::values_at(
-        extended_.base, places_, point(), 1,
-        [&](int first, const auto& object, const auto& momentum, const auto& configuration) {
-          const auto time = detail::varied_along(Vector<double, 1>(point().time), time_direction - first);
-          return observe_({extended_.base, time(0), object, momentum, configuration});
-        });
-    NodeValues out{here.values, Eigen::MatrixXd::Zero(here.values.size(), size + parameters())};
-    out.derivatives.leftCols(2 * n) = here.derivatives.leftCols(2 * n);
-    out.derivatives.col(time_place) = here.derivatives.col(time_direction);
-    out.derivatives.rightCols(parameters()) = here.derivatives.middleCols(2 * n, parameters());
-    return out;
+    return detail::observe_timed(extended_.base, places_, point(), size, observe_);
+  }
+  std::optional<NodeValues> observe_later(double time) override {
+    const auto to = in_part_.from(point(), time);
+    if (!to) return std::nullopt;
+    extended_.origin = point().time;
+    linearise_step(extended_, extended_step(to->step, time - point().time, 0), members_, extended_step_);
+    give_size();
+    // It ends at this time, whenever it began.
+    extended_step_.equations_by_start.row(time_equation).setZero();
+    const Eigen::RowVectorXd none = Eigen::RowVectorXd::Zero(extended_step_.equations_by_start.cols());
+    arrange(Eigen::RowVectorXd::Zero(equations), none);
+    if (!stage_.factor()) return std::nullopt;
+    return detail::before_step(detail::observe_timed(extended_.base, places_, *to, size, observe_), stage_);
   }
 
   std::vector<double> save() override {
@@ -161,20 +164,28 @@ class LinearisedTimedMotion final : public LinearisedMotion {
   static constexpr int step_equation = Extended::dimension + Sys::arrow_constraints;
 
   Step<Extended> last_step() {
-    const Step<Sys>& step = point().step;
-    const PairArrow<double, 1> times{Vector<double, 1>(0.0), Vector<double, 1>(point().step_size)};
+    const double multiplier = [&] {
+      if constexpr (prescribed) {
+        if (point().index > 1) return integrator_.step_multiplier();
+      }
+      return 0.0;
+    }();
+    return extended_step(point().step, point().step_size, multiplier);
+  }
+  /// The same step of the extended system, with the multiplier of its size.
+  Step<Extended> extended_step(const Step<Sys>& step, double step_size, [[maybe_unused]] double multiplier) {
+    const PairArrow<double, 1> times{Vector<double, 1>(0.0), Vector<double, 1>(step_size)};
     if constexpr (prescribed) {
-      extended_.step_size.epsilon = point().step_size / extended_.base.time_scale(step.arrow);
+      extended_.step_size.epsilon = step_size / extended_.base.time_scale(step.arrow);
       typename Extended::Multipliers multipliers;
-      multipliers << step.multipliers.template head<Sys::arrow_constraints>(),
-          point().index == 1 ? 0.0 : integrator_.step_multiplier(),
+      multipliers << step.multipliers.template head<Sys::arrow_constraints>(), multiplier,
           step.multipliers.template tail<Sys::object_constraints>();
       return {{times, step.arrow}, multipliers};
     } else {
       return {{times, step.arrow}, step.multipliers};
     }
   }
-  /// Of the first step: t1 - t0 = h and nu = 0 in place of the equations of time and size, and p_t = F+_t, which is p_t
+  /// Of a given size: t1 - t0 = h and nu = 0 in place of the equations of time and size, and p_t = F+_t, which is p_t
   /// + (F+ - F-)_t and what the equation of time is short of.
   void give_size() {
     LinearStep& step = extended_step_;
@@ -223,6 +234,7 @@ class LinearisedTimedMotion final : public LinearisedMotion {
   }
 
   typename Steps::Integrating integrator_;
+  detail::StepInPart<Sys> in_part_;
   Extended extended_;
   ParameterPlaces places_;
   std::vector<const double*> members_;

@@ -7,28 +7,46 @@
 ///     const RunGradient time = gradient<TimeMode::prescribed>(
 ///         kepler, {{1, 0}, {0, 1.2}}, [](const auto& node) { return node.time; }, {.steps = 200});
 ///
-/// Rows of the end are (v, mu, t, p_t), after them epsilon where steps are prescribed; columns of the start (v, mu).
-/// With the momentum of time p_t the matrix pulls the form of the extended phase space back to that of the start, for
-/// adaptive steps; prescribed ones add what epsilon depends on the start (linearised_timed_motion.hpp).
+/// Rows of the end are (v, mu, t, p_t), after them epsilon where steps are prescribed; (v, mu, t, rho), rho the density
+/// of steps, where they are controlled; columns of the start (v, mu). With the momentum of time p_t the matrix pulls
+/// the form of the extended phase space back to that of the start, for adaptive steps; prescribed ones add what epsilon
+/// depends on the start (linearised_timed_motion.hpp).
 ///
-/// Requirements and errors are those of LinearisedTimedMotion; an integral over the run, whose nodes' weights vary, is
-/// refused (std::invalid_argument). Nothing is taken past a step without root: its status is `no_step`.
+/// Requirements and errors are those of LinearisedTimedMotion and LinearisedControlledMotion; an integral over the run,
+/// whose nodes' weights vary, is refused (std::invalid_argument). Nothing is taken past a step without root: its status
+/// is `no_step`.
 
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
+#include <lagroid/solvers/sensitivity/times/linearised_controlled_motion.hpp>
 #include <lagroid/solvers/sensitivity/times/linearised_timed_motion.hpp>
 
 #include <utility>
 
 namespace lagroid {
 
+/// Whether runs whose steps vary in this way have derivatives.
+template <class Sys, TimeMode mode>
+concept TimedDerivatives = VaryingSteps<Sys, mode> ||(mode == TimeMode::controlled && VariedTimeScale<Sys>);
+
+namespace detail {
+
+template <class Sys, TimeMode mode> struct TimedMotion { using Type = LinearisedTimedMotion<Sys, mode>; };
+template <class Sys> struct TimedMotion<Sys, TimeMode::controlled> { using Type = LinearisedControlledMotion<Sys>; };
+
+}  // namespace detail
+
+/// A motion by such steps, linearised.
+template <class Sys, TimeMode mode>
+requires TimedDerivatives<Sys, mode>
+using TimedMotion = typename detail::TimedMotion<Sys, mode>::Type;
+
 template <TimeMode mode, class Sys>
-requires VaryingSteps<Sys, mode> Sensitivities sensitivities(const Sys& system,
-                                                             const State<typename Sys::GroupoidType>& start,
-                                                             const SensitivityOptions<Sys>& options = {}) {
+requires TimedDerivatives<Sys, mode> Sensitivities sensitivities(const Sys& system,
+                                                                 const State<typename Sys::GroupoidType>& start,
+                                                                 const SensitivityOptions<Sys>& options = {}) {
   constexpr int n = Sys::dimension;
-  LinearisedTimedMotion<Sys, mode> motion(
-      system, start, options.configuration.value_or(system.groupoid.unit(start.object)), options.parameters,
-      [](const auto& node) { return VariedVector(node.momentum); });
+  TimedMotion<Sys, mode> motion(system, start, options.configuration.value_or(system.groupoid.unit(start.object)),
+                                options.parameters, [](const auto& node) { return VariedVector(node.momentum); });
   const int count = motion.states() + motion.parameters();
   Propagated end = propagate_forward(motion, options.steps, Eigen::MatrixXd::Identity(count, count));
   // The momentum that is reported.
@@ -40,11 +58,11 @@ requires VaryingSteps<Sys, mode> Sensitivities sensitivities(const Sys& system,
 
 /// The derivatives of `f`, a function of an ObservedTimedNode, at a node or the end, taken backwards.
 template <TimeMode mode, class Sys, class F>
-requires VaryingSteps<Sys, mode> RunGradient gradient(const Sys& system, const State<typename Sys::GroupoidType>& start,
-                                                      F f, const SensitivityOptions<Sys>& options = {}) {
-  LinearisedTimedMotion<Sys, mode> motion(
-      system, start, options.configuration.value_or(system.groupoid.unit(start.object)), options.parameters,
-      detail::observer_of<ObservedTimedNode<Sys>>(std::move(f)));
+requires TimedDerivatives<Sys, mode> RunGradient gradient(const Sys& system,
+                                                          const State<typename Sys::GroupoidType>& start, F f,
+                                                          const SensitivityOptions<Sys>& options = {}) {
+  TimedMotion<Sys, mode> motion(system, start, options.configuration.value_or(system.groupoid.unit(start.object)),
+                                options.parameters, detail::observer_of<ObservedTimedNode<Sys>>(std::move(f)));
   const Propagated back = propagate_backward(motion, options.steps, options.observed, options.budget);
   RunGradient out = gradient_of_run(back, motion.states(), motion.parameter_names());
   if (out.converged()) out.by_start.conservativeResize(Eigen::NoChange, 2 * Sys::dimension);

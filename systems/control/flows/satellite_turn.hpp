@@ -34,6 +34,7 @@ struct SatelliteTurn : ControlledFlow<SatelliteTurn, Product<Action<SO3, Rotated
                       parameter("cone", &SatelliteTurn::cone, "rad", "how far, at least; 0: anywhere", nonnegative),
                       choice("cost", &SatelliteTurn::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
+  static constexpr std::array flow_reads{false, true};  // not the direction
   static constexpr std::array<std::string_view, 6> states{"r1", "r2", "r3", "w1", "w2", "w3"};
   static constexpr std::array<std::string_view, 3> control_names{"torque1", "torque2", "torque3"};
 
@@ -53,9 +54,10 @@ struct SatelliteTurn : ControlledFlow<SatelliteTurn, Product<Action<SO3, Rotated
   }
   template <class A, class S> Vector<S, 1> inequality(const A& g, const Vector<S, 3>&, const S&) const {
     using std::cos;
+    if (!(cone > 0)) return Vector<S, 1>(S(-1.0));
     const auto& [turn, rates] = g;
     const Vector<S, 3> seen = RotatedDirections::act(turn.point, turn.element);
-    return Vector<S, 1>(cone > 0 ? seen(2) - cos(cone) : S(-1.0));
+    return Vector<S, 1>(seen(2) - cos(cone));
   }
 };
 

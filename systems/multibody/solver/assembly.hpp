@@ -11,14 +11,15 @@
 
 namespace lagroid::multibody {
 
-struct Assembled {
-  Model model;
-  SceneState start;                   ///< but for what follows from places and attitudes
+template <class S = double> struct BasicAssembled {
+  BasicModel<S> model;
+  BasicSceneState<S> start;           ///< but for what follows from places and attitudes
   std::vector<Elimination> matrices;  ///< of the islands
 };
+using Assembled = BasicAssembled<>;
 
 /// The arrays that steps of the size h run over. Joints that touch nothing that moves are left out. Throws
 /// std::domain_error where one island obeys two principles.
-Assembled assemble(Scene scene, double h);
+template <class S> BasicAssembled<S> assemble(BasicScene<S> scene, double h);
 
 }  // namespace lagroid::multibody

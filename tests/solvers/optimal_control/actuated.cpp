@@ -2,12 +2,15 @@
 #include "support.hpp"
 
 #include <lagroid/solvers/step/newton_step.hpp>
+#include <lagroid/systems/control/actuated/pushed.hpp>
 #include <lagroid/systems/control/flows/steered_sleigh.hpp>
-#include <lagroid/systems/control/pushed.hpp>
 #include <lagroid/systems/pendulums/damped_pendulum.hpp>
+#include <lagroid/systems/pendulums/spherical_pendulum.hpp>
 #include <lagroid/systems/rolling/chaplygin_sleigh.hpp>
 
+#include <cmath>
 #include <numbers>
+#include <type_traits>
 
 namespace lagroid {
 namespace {
@@ -109,6 +112,52 @@ TEST(ActuatedSystems, MoveASleighAsideAtTheCostOfItsFlow) {
   const double fine = cheapest(task, 40);
   EXPECT_NEAR((4 * fine - coarse) / 3, reference, 1e-3 * reference);
   EXPECT_NEAR(std::log2((coarse - reference) / (fine - reference)), 2, 0.2);
+}
+
+/// A bob on a rod in space, moved along the circle in the plane of x and z by a force, and across it by another.
+struct PushedBob : ActuatedSystem<PushedBob, SphericalPendulum, 2> {
+  template <class Q, class S> Vector<S, 3> force(const Q& q, const Vector<S, 2>& u) const {
+    return {-q(2) * u(0), u(1), q(0) * u(0)};
+  }
+  template <class State, class S> S running_cost(const State&, const Vector<S, 2>& u) const {
+    return u(0) * u(0) + u(1) * u(1);
+  }
+};
+
+// An object constraint: the same motion as in an angle, which is free of it.
+TEST(ActuatedSystems, SwingABobOnItsRodAtTheCostOfItsAngle) {
+  constexpr double angle = 1.2;
+  ControlTask<Pushed<Pendulum, 1>> in_angle;
+  in_angle.boundary = {{Vector<double, 1>(0.0), Vector<double, 1>(angle)}, {}};
+  std::get<1>(in_angle.boundary) = {Vector<double, 1>(0.0), Vector<double, 1>(0.0)};
+  in_angle.duration = 2;
+  const auto reference_on = [&](long stages) { return solve_control(in_angle, stages).report.cost; };
+  const double reference = (4 * reference_on(200) - reference_on(100)) / 3;
+
+  using G = PushedBob::GroupoidType;
+  const Vector<double, 3> end(std::sin(angle), 0, -std::cos(angle));
+  ControlTask<PushedBob> task;
+  task.duration = 2;
+  task.boundary = {{Vector<double, 3>(0, 0, -1), end}, {Vector<double, 3>::Zero(), Vector<double, 3>::Zero()}};
+  // At rest but for what the rod takes, which is along it.
+  task.free_start[5] = true;
+  task.free_end[3] = task.free_end[4] = task.free_end[5] = true;
+  task.end_condition = node_condition<G, 2>([end](const auto& p) {
+    const auto& momentum = std::get<1>(p).target;
+    using S = typename std::decay_t<decltype(momentum)>::Scalar;
+    return Vector<S, 2>(momentum(0) * -end(2) + momentum(2) * end(0), momentum(1));
+  });
+  double costs[2];
+  int grid = 0;
+  for (const long stages : {20L, 40L}) {
+    const auto found = solve_control(task, stages);
+    ASSERT_TRUE(found.report.converged()) << found.report.message;
+    costs[grid++] = found.report.cost;
+    for (const auto& [arrow, momenta] : found.trajectory.arrows) EXPECT_NEAR(arrow.target.norm(), 1, 1e-12);
+  }
+  EXPECT_NEAR((4 * costs[1] - costs[0]) / 3, reference, 1e-4 * reference);
+  EXPECT_NEAR(std::log2((costs[0] - reference) / (costs[1] - reference)), 2, 0.1);
+  expect_laws(task, 6);
 }
 
 }  // namespace

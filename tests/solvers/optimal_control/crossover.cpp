@@ -152,6 +152,10 @@ TEST(BrokenControlSolutions, FailTheLawsOfTheirGridsAndResiduals) {
   auto wrong = solve_control(rest_to_rest(), 50);
   wrong.costates[7][0] += 1e-9;
   EXPECT_FALSE(laws::control_solution_laws(rest_to_rest(), wrong).law("the KKT residual vanishes").holds());
+  // Grids without a solution have no order.
+  EXPECT_FALSE(laws::control_solution_laws(rest_to_rest(), solve_control(rest_to_rest(), 50), {.max_iterations = 0})
+                   .law("the cost is of order two in envelope")
+                   .holds());
 }
 
 }  // namespace

@@ -163,7 +163,7 @@ TEST(ControlLoops, RefuseWhatTheyCannotLookAheadFor) {
   task.free_end[3] = true;
   EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 20), std::invalid_argument);
   task.free_end[3] = false;
-  task.lower = task.upper;
+  task.lower = 2 * task.upper;
   EXPECT_THROW(ControlLoop<SatelliteTurn>(task, 20), std::invalid_argument);
 }
 

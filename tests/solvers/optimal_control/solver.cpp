@@ -108,7 +108,7 @@ TEST(ControlSolvers, AnEndMayBeFreeInPart) {
   EXPECT_NEAR(found.report.cost, to_rest / 4, 1e-2);  // 12 and 3, by the calculus of variations
   // lambda is that of the midpoint: carried to the end by half a step it vanishes along what is free.
   const auto& last = found.costates.back();
-  EXPECT_NEAR(last[1] - 0.5 * found.trajectory.step * last[0], 0, 1e-9);
+  EXPECT_NEAR(last[1] - 0.5 * found.trajectory.step() * last[0], 0, 1e-9);
   task = rest_to_rest();
   task.free_start[1] = true;
   EXPECT_NEAR(solve_control(task, 100).report.cost, to_rest / 4, 1e-2);
@@ -137,7 +137,6 @@ class Broken final : public Transcription {
   const TranscriptionSizes& sizes() const override { return of_.sizes(); }
   const std::vector<bool>& free_start() const override { return of_.free_start(); }
   const std::vector<bool>& free_end() const override { return of_.free_end(); }
-  bool duration_is_free() const override { return of_.duration_is_free(); }
   void values(StageValues& out) const override { of_.values(out); }
   void derivatives(const StageRows& lambda, const StageRows& z, StageDerivatives& out) const override {
     of_.derivatives(lambda, z, out);

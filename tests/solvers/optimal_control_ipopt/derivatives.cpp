@@ -81,6 +81,21 @@ TEST(ProgramOfIpopt, HasTheDerivativesOfItsValues) {
   to_a_line.free_start = {true, false, false};
   to_a_line.free_end = {false, false, true};
   expect_derivatives(to_a_line);
+  auto through_a_gate = dubins();
+  const auto gate = node_condition<SE2, 1>(
+      []<class S>(const Matrix<S, 3, 3>& p) { return Vector<S, 1>(p(0, 2) + p(1, 2) * p(1, 2) - 2.5); });
+  through_a_gate.phases.resize(3);
+  for (auto& phase : through_a_gate.phases) {
+    phase.stages = 2;
+    phase.duration_is_free = true;
+    phase.end_condition = gate;
+    phase.lower(0) = -2;
+  }
+  through_a_gate.phases[0].shortest = 0.1;
+  through_a_gate.phases[1].upper(0) = -2;  // fixed
+  through_a_gate.phases[2].end_condition = nullptr;
+  through_a_gate.phases[2].upper(0) = 2;
+  expect_derivatives(through_a_gate);
   SatelliteTurn satellite;
   satellite.avoided << 0.8369922322356853, 0.09964193240901018, 0.5380664350086549;
   satellite.cone = 0.4363323129985824;

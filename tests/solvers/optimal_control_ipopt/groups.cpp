@@ -54,5 +54,15 @@ TEST(ControlByIpopt, AgreesOnPoses) {
   expect_agreement("car", car);
 }
 
+TEST(ControlByIpopt, AgreesOnPhases) {
+  auto task = task_on<DubinsCar>({0, 0, 0}, {4, 2, std::numbers::pi / 3}, 5);
+  const auto gate = node_condition<SE2, 1>(
+      []<class S>(const Matrix<S, 3, 3>& p) { return Vector<S, 1>(p(0, 2) + p(1, 2) * p(1, 2) - 2.5); });
+  task.phases = {{.stages = 15, .duration = 3, .duration_is_free = true, .shortest = 0.5, .end_condition = gate},
+                 {.stages = 25, .duration = 3, .duration_is_free = true}};
+  for (auto& phase : task.phases) phase.lower(0) = -1, phase.upper(0) = 1;
+  expect_agreement("gate", task);
+}
+
 }  // namespace
 }  // namespace lagroid

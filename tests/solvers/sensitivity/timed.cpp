@@ -60,8 +60,8 @@ Drawn<RigidBody> draw_body(unsigned seed) {
   return out;
 }
 
-template <TimeMode mode, class Sys> LinearisedTimedMotion<Sys, mode> motion_of(const Drawn<Sys>& from) {
-  return LinearisedTimedMotion<Sys, mode>(
+template <TimeMode mode, class Sys> TimedMotion<Sys, mode> motion_of(const Drawn<Sys>& from) {
+  return TimedMotion<Sys, mode>(
       from.system, from.start, from.configuration, parameters_of<Sys>(), [](const auto& node) {
         const VariedVector arrow = node.system.groupoid.coordinates_of_arrow(node.configuration);
         VariedVector out(1 + arrow.size() + node.momentum.size());

@@ -5,7 +5,7 @@
 ///
 /// rho(s) = s, or the loss of Huber, which outliers pull less. At the solution, with J the derivatives of the weighted
 /// residuals, the covariance of x is s^2 (J^T J)^{-1}, s^2 the mean square of what is left over; directions in which
-/// J^T J vanishes to round-off cannot be told from these data and are named.
+/// J^T J vanishes to round-off cannot be told from these data and are named, by what of each unknown changes together.
 ///
 ///     const Fit fit = fit_scene(subject, {"run.csv"}, {.unknowns = {"initial", "parameters.length"}});
 ///     std::cout << text_of(fit);
@@ -15,7 +15,8 @@
 /// Source: Triggs, McLauchlan, Hartley, Fitzgibbon, Bundle adjustment, 2000, sec. 4 (robust least squares); solved by
 /// Ceres' trust region of Levenberg and Marquardt.
 
-#include "gradient_table.hpp"
+#include "../computed_columns.hpp"
+#include "../gradient_table.hpp"
 
 #include <array>
 #include <cstdint>
@@ -28,6 +29,7 @@ namespace lagroid::app {
 struct FitOptions {
   std::vector<std::string> unknowns{"initial", "parameters"};  ///< initial.NAME or parameters.NAME
   std::vector<std::string> columns{};                          ///< of the data; all that are observed where it is empty
+  std::vector<NamedText> combinations{};                       ///< functions of unknowns that are to be told, too
   std::map<std::string, double> sigma{};                       ///< of a column, 1 where nothing stands
   std::map<std::string, std::array<double, 2>> bounds{};       ///< of an unknown
   double huber = 0;     ///< residuals beyond so many sigma weigh by their size, not its square; 0: all by its square
@@ -43,6 +45,12 @@ struct Fit {
     double value = 0;
     double deviation = 0;  ///< infinite where the data do not tell
     bool at_bound = false;
+  };
+  /// A function of unknowns and parameters.
+  struct Combination {
+    std::string name;
+    double value = 0;
+    double deviation = 0;  ///< infinite where the data do not tell
   };
   /// What is left over of a column.
   struct Column {
@@ -67,13 +75,17 @@ struct Fit {
   std::string system;
   std::string status;   ///< converged, not_converged or failed
   std::string failure;  ///< of the scene's own run
-  int iterations = 0;
+  int iterations = 0;   ///< of all solves from the guess
   std::size_t runs = 0;
   double cost = 0;   ///< half the sum
   double scale = 0;  ///< s: the root mean square of what is left over, in sigmas
   std::vector<Unknown> unknowns;
   Eigen::MatrixXd covariance;             ///< of those that the data tell
-  std::vector<std::string> undetermined;  ///< combinations that they do not
+  Eigen::Index rank = 0;                  ///< how many combinations of unknowns they tell
+  Eigen::VectorXd singular_values;        ///< of derivatives with columns of length one
+  Eigen::MatrixXd null_space;             ///< changes of the unknowns that the data do not see, a row each
+  std::vector<std::string> undetermined;  ///< these in words
+  std::vector<Combination> combinations;
   std::vector<Column> columns;
   std::vector<Point> points;
   std::vector<double> other_costs;   ///< of the other guesses, least first

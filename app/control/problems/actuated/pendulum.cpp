@@ -1,7 +1,7 @@
-#include <lagroid/systems/control/pushed.hpp>
+#include <lagroid/systems/control/actuated/pushed.hpp>
 
-#include "../problem_of.hpp"
-#include "problems.hpp"
+#include "../../problem_of.hpp"
+#include "../problems.hpp"
 
 namespace lagroid::app {
 

@@ -11,10 +11,23 @@ namespace lagroid::app {
 
 namespace {
 
+std::string deviation_in_words(double deviation) {
+  return std::isfinite(deviation) ? fmt::format("{:.3g}", deviation) : "not told";
+}
+
 std::string line_of(const Fit::Unknown& unknown, std::size_t width) {
-  std::string deviation = std::isfinite(unknown.deviation) ? fmt::format("{:.3g}", unknown.deviation) : "not told";
-  return fmt::format("  {:{}}  {:20.12g}  {:>12}  {:14.6g}{}\n", unknown.name, width, unknown.value, deviation,
-                     unknown.start, unknown.at_bound ? "  at its bound" : "");
+  return fmt::format("  {:{}}  {:20.12g}  {:>12}  {:14.6g}{}\n", unknown.name, width, unknown.value,
+                     deviation_in_words(unknown.deviation), unknown.start, unknown.at_bound ? "  at its bound" : "");
+}
+
+nlohmann::ordered_json matrix_of(const Eigen::MatrixXd& a) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    nlohmann::ordered_json row = nlohmann::ordered_json::array();
+    for (Eigen::Index k = 0; k < a.cols(); ++k) row.push_back(a(i, k));
+    rows.push_back(row);
+  }
+  return rows;
 }
 
 }  // namespace
@@ -24,10 +37,17 @@ std::string text_of(const Fit& fit) {
                                 fit.points.size(), fit.runs, fit.runs == 1 ? "" : "s", fit.status, fit.iterations);
   std::size_t width = 0;
   for (const Fit::Unknown& each : fit.unknowns) width = std::max(width, each.name.size());
+  for (const Fit::Combination& each : fit.combinations) width = std::max(width, each.name.size());
   out += fmt::format("  {:{}}  {:>20}  {:>12}  {:>14}\n", "", width, "value", "deviation", "in the scene");
   for (const Fit::Unknown& each : fit.unknowns) out += line_of(each, width);
   for (const std::string& combination : fit.undetermined)
     out += fmt::format("  not told by these data: {}\n", combination);
+  if (!fit.undetermined.empty())
+    out += fmt::format("  they tell {} of {} combinations\n", fit.rank, fit.unknowns.size());
+  if (!fit.combinations.empty()) out += "\n";
+  for (const Fit::Combination& each : fit.combinations)
+    out +=
+        fmt::format("  {:{}}  {:20.12g}  {:>12}\n", each.name, width, each.value, deviation_in_words(each.deviation));
   if (fit.unknowns.size() > 1) {
     out += "\n  correlations\n";
     for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
@@ -70,13 +90,15 @@ std::string json_of(const Fit& fit) {
                                {"deviation", finite(each.deviation)},
                                {"in_the_scene", each.start},
                                {"at_bound", each.at_bound}});
-  out["covariance"] = Json::array();
-  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index k = 0; k < fit.covariance.cols(); ++k) row.push_back(fit.covariance(i, k));
-    out["covariance"].push_back(row);
-  }
+  out["covariance"] = matrix_of(fit.covariance);
+  out["rank"] = fit.rank;
+  out["singular_values"] = std::vector<double>(fit.singular_values.begin(), fit.singular_values.end());
+  out["null_space"] = matrix_of(fit.null_space);
   out["undetermined"] = fit.undetermined;
+  out["combinations"] = Json::array();
+  for (const Fit::Combination& each : fit.combinations)
+    out["combinations"].push_back(
+        {{"name", each.name}, {"value", finite(each.value)}, {"deviation", finite(each.deviation)}});
   out["columns"] = Json::array();
   for (const Fit::Column& each : fit.columns)
     out["columns"].push_back({{"name", each.name},

@@ -1,0 +1,220 @@
+// The subject of `lagroid gradient` and `lagroid fit`, of scenes of bodies.
+
+#include "../bodies/scene_bodies.hpp"
+#include "../bodies/scene_numbers.hpp"
+#include "../bodies/scene_picture.hpp"
+#include "../bodies/scene_run.hpp"
+#include "../reading/kinds.hpp"
+#include "system_gradients.hpp"
+
+#include <lagroid/solvers/sensitivity/varied_parameters.hpp>
+#include <lagroid/systems/multibody/sensitivity/linearised_scene.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+using multibody::LinearisedScene;
+using multibody::Multibody;
+using multibody::ObservedScene;
+using V = VariedNumber;
+using VariedBodies = BasicSceneBodies<V>;
+
+/// What is observed, by groups, in the order and by the names of the columns that runs record.
+template <class Put> void each_column(const BasicNamedBody<V>& b, const ObservedScene* node, const Put& put) {
+  const auto group = [&](const char* name, const std::vector<std::string>& labels, const auto& values) {
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      put(GradientName{name, labels[i]}, node == nullptr ? V(0) : V(values(*node)(Eigen::Index(i))));
+  };
+  const multibody::Attitude a = b.body.attitude;
+  group("position", columns(b.name, {"x", "y", "z"}), [&](const ObservedScene& n) { return n(b.body.centre); });
+  if (a.index >= 0) {
+    group("attitude", attitude_of(b.name), [&](const ObservedScene& n) { return n.quaternion(a); });
+    group("spin", columns(b.name, {"M1", "M2", "M3"}), [&](const ObservedScene& n) { return n.spin_of(a); });
+    group("angular_velocity", columns(b.name, {"w1", "w2", "w3"}), [&](const ObservedScene& n) {
+      return multibody::VariedVec(
+          n.spin_of(a).cwiseQuotient(n.model.factors.moments[std::size_t(n.model.places(a).index)]));
+    });
+  }
+  if (b.linear < 0) return;
+  const auto momentum = [&](const ObservedScene& n) { return n.momentum_of(b.linear); };
+  if (!b.planar) {
+    group("momentum", columns(b.name, {"px", "py", "pz"}), momentum);
+    return;
+  }
+  const auto place = [&](const ObservedScene& n) { return std::size_t(n.model.linear_places[std::size_t(b.linear)]); };
+  const auto alone = [](const V& x) { return Vector<V, 1>(x); };
+  group("angle", {column(b.name, "angle")}, [&](const ObservedScene& n) { return alone(n.at.x[place(n)](2)); });
+  group("momentum", columns(b.name, {"px", "py", "L"}), momentum);
+  group("angular_velocity", {column(b.name, "w")},
+        [&](const ObservedScene& n) { return alone(momentum(n)(2) / n.model.factors.inertia[place(n)](2)); });
+}
+
+multibody::VariedNumbers observed(const VariedBodies& bodies, const ObservedScene& node) {
+  std::vector<V> out;
+  for (const BasicNamedBody<V>& b : bodies.bodies)
+    each_column(b, &node, [&](const GradientName&, const V& value) { out.push_back(value); });
+  out.push_back(node.kinetic + node.potential);
+  return Eigen::Map<const multibody::VariedNumbers>(out.data(), Eigen::Index(out.size()));
+}
+
+/// A scene as a function of numbers in it.
+LinearisedScene::Write write_with(const Section& scene, const std::vector<SceneNumber>& numbers) {
+  return [scene, numbers](const std::vector<V>& x) {
+    std::vector<VariedAt> varied;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (int direction = 0; direction < varied_at_once; ++direction)
+        if (x[i].tangent(direction) != 0) varied.push_back({numbers[i].path, direction});
+    const auto bodies = std::make_shared<VariedBodies>(read_varied_scene(scene, varied));
+    return multibody::WrittenScene{std::move(bodies->scene),
+                                   [bodies](const ObservedScene& node) { return observed(*bodies, node); },
+                                   bodies->projects};
+  };
+}
+
+std::vector<double> values_of(const std::vector<SceneNumber>& numbers) {
+  std::vector<double> out;
+  for (const SceneNumber& number : numbers) out.push_back(number.value);
+  return out;
+}
+
+/// Directions of the start, in the order of the motion's states: where bodies are and how they are turned, and momenta.
+void name_start(const Multibody& motion, const VariedBodies& bodies, GradientSubject& out) {
+  const multibody::SceneState& state = motion.state();
+  const std::size_t linear = state.momentum.size(), n = 3 * (linear + state.spin.size());
+  out.start.resize(2 * n);
+  out.sizes.assign(2 * n, 0.0);
+  const auto name = [&](std::size_t at, const char* group, const std::vector<std::string>& labels,
+                        const multibody::Vec& sizes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      out.start[at + i] = {group, labels[i]};
+      out.sizes[at + i] = sizes(Eigen::Index(i));
+    }
+  };
+  for (const BasicNamedBody<V>& b : bodies.bodies) {
+    if (b.linear >= 0) {
+      const auto f = std::size_t(motion.linear_place(b.linear));
+      name(3 * f, "position", columns(b.name, {"x", "y", b.planar ? "angle" : "z"}), state.at.x[f]);
+      name(n + 3 * f, "momentum", columns(b.name, {"px", "py", b.planar ? "L" : "pz"}), state.momentum[f]);
+    }
+    if (b.body.attitude.index >= 0) {
+      const auto r = std::size_t(motion(b.body.attitude).index);
+      name(3 * (linear + r), "turn", columns(b.name, {"turn1", "turn2", "turn3"}), multibody::Vec::Ones());
+      name(n + 3 * (linear + r), "spin", columns(b.name, {"M1", "M2", "M3"}), state.spin[r]);
+    }
+  }
+}
+
+/// Why there is no derivative by a number: scenes with a little more and with a little less of it are none, or joints
+/// that hold would not. Empty where there is one.
+std::string why_not_changed(const Section& scene, const SceneNumber& number,
+                            const std::function<Multibody(const Section&)>& begun) {
+  std::string why;
+  const double by = 1e-3 * (number.value == 0 ? 1 : number.value);
+  for (const double change : {by, -by}) {
+    SceneNumber other = number;
+    other.value += change;
+    try {
+      begun(scene_with(scene, {other}));
+      LinearisedScene first(begun(scene), {number.name}, {number.value}, write_with(scene, {number}));
+      if (first.advance().converged()) first.linearise();
+      return "";
+    } catch (const WithoutDerivative& refusal) {
+      return refusal.what();
+    } catch (const SceneError& error) {
+      why = fmt::format(
+          "a scene with another one is refused ({}); what follows from the start, as a length that is "
+          "not given, changes with it",
+          error.problem());
+    }
+  }
+  return why;
+}
+
+}  // namespace
+
+std::optional<GradientSubject> bodies_gradient(const Section& scene) {
+  if (!scene.has(keys::bodies)) return std::nullopt;
+  const BodiesScene read = read_bodies(scene, {});
+  if (!read.extent.events.empty())
+    scene.fail("event", "of scenes of bodies there are no derivatives through events; leave the events out");
+  if (read.options.controlled)
+    scene.section("time", "").fail("mode", "of scenes of bodies there are derivatives by equal steps; leave it out");
+  const double step = read.to_check.step;
+  const auto begun = [step, options = read.options](const Section& of) { return begin_bodies(of, step, options); };
+  const auto begun_singly = [step, options = read.options](const Section& of) {
+    multibody::Options single = options;
+    single.composition = compositions::single;
+    return begin_bodies(of, step, single);
+  };
+  const auto stages = [begun_singly, shares = read.options.composition.coefficients](
+                          const Section& of) -> std::optional<LinearisedScene::Stages> {
+    if (shares.size() <= 1) return std::nullopt;
+    return LinearisedScene::Stages{begun_singly(of), {shares.begin(), shares.end()}};
+  };
+  const Multibody motion = begun(scene);
+  GradientSubject out;
+  out.system = read.to_check.name;
+  out.steps = read.extent.steps;
+  const VariedBodies bodies = read_varied_scene(scene, {});
+  for (const BasicNamedBody<V>& b : bodies.bodies)
+    each_column(b, nullptr, [&](const GradientName& name, const V&) { out.observed.push_back(name); });
+  out.observed.push_back({"energy", "energy"});
+  name_start(motion, bodies, out);
+  std::vector<SceneNumber> numbers;
+  for (const SceneNumber& number : numbers_to_differentiate(scene)) {
+    if (const std::string why = why_not_changed(scene, number, begun_singly); !why.empty()) {
+      out.refused.push_back({number.name, why});
+      continue;
+    }
+    numbers.push_back(number);
+    out.parameters.push_back({"parameters", number.name});
+    out.sizes.push_back(number.value);
+  }
+  const bool tied = motion.rows() > 0;
+  if (tied)
+    out.notes.emplace_back(
+        "derivatives by the start are along what the joints allow of a displacement and of a momentum");
+  const auto begin = [scene, numbers, begun, stages](const std::vector<std::string>& parameters,
+                                                     const std::vector<Nudge>& nudges) {
+    const auto named = [&](const std::string& name) {
+      SceneNumber number =
+          *std::find_if(numbers.begin(), numbers.end(), [&](const SceneNumber& n) { return n.name == name; });
+      for (const Nudge& nudge : nudges)
+        if (nudge.parameter == name) number.value += nudge.by;
+      return number;
+    };
+    std::vector<SceneNumber> changes, chosen;
+    for (const Nudge& nudge : nudges)
+      if (!nudge.parameter.empty()) changes.push_back(named(nudge.parameter));
+    for (const std::string& name : parameters) chosen.push_back(named(name));
+    const Section changed = scene_with(scene, changes);
+    Multibody from = begun(changed);
+    Eigen::VectorXd by =
+        Eigen::VectorXd::Zero(Eigen::Index(6 * (from.state().momentum.size() + from.state().spin.size())));
+    for (const Nudge& nudge : nudges)
+      if (nudge.parameter.empty()) by(nudge.index) += nudge.by;
+    if (!by.isZero(0)) displace(from, by);
+    return std::make_unique<LinearisedScene>(std::move(from), parameters, values_of(chosen),
+                                             write_with(changed, chosen), stages(changed));
+  };
+  out.begin = begin;
+  if (tied)
+    out.begun_by = [begin](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+      const Eigen::MatrixXd allowed = begin({}, nudges)->allowed_directions();
+      // What numbers do to the start is part of the first step.
+      Eigen::MatrixXd all = Eigen::MatrixXd::Zero(allowed.rows(), allowed.cols() + Eigen::Index(parameters.size()));
+      all.leftCols(allowed.cols()) = allowed;
+      return all;
+    };
+  return out;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,184 @@
+#include "answer.hpp"
+
+#include <lagroid/core/matrices/decompositions.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace lagroid::app {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Directions that span the same, with as many zeros as there are directions to them: Gauss and Jordan, with the
+/// largest pivot.
+Eigen::MatrixXd with_zeros(Eigen::MatrixXd rows) {
+  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+    Eigen::Index pivot = 0, row = 0;
+    rows.bottomRows(rows.rows() - k).cwiseAbs().maxCoeff(&row, &pivot);
+    rows.row(k).swap(rows.row(k + row));
+    rows.row(k) /= rows(k, pivot);
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+      if (i != k) rows.row(i) -= rows(i, pivot) * Eigen::RowVectorXd(rows.row(k));
+  }
+  return rows.unaryExpr([](double part) { return std::abs(part) < 1e-5 ? 0 : part; });
+}
+
+/// What changes together, unseen: of unknowns that are not zero by factors.
+std::string in_words(const Eigen::RowVectorXd& parts, const Eigen::VectorXd& units,
+                     const std::vector<Fit::Unknown>& unknowns) {
+  std::vector<std::string> names, changes;
+  bool is_one_factor = true;
+  // The smallest is one, unless it is far smaller than the largest.
+  double smallest = 0, largest = 0;
+  for (const double part : parts) {
+    if (part == 0) continue;
+    if (smallest == 0 || std::abs(part) < std::abs(smallest)) smallest = part;
+    if (std::abs(part) > std::abs(largest)) largest = part;
+  }
+  const double one = std::abs(largest) <= 10 * std::abs(smallest) ? smallest : largest;
+  for (Eigen::Index j = 0; j < parts.size(); ++j) {
+    if (parts(j) == 0) continue;
+    const bool by_factor = units(j) == unknowns[std::size_t(j)].value;
+    const double part = parts(j) / one;
+    is_one_factor = is_one_factor && by_factor && std::abs(part - 1) < 1e-4;
+    names.push_back(unknowns[std::size_t(j)].name);
+    changes.push_back(by_factor ? fmt::format("{} by {:.4g} %", names.back(), part)
+                                : fmt::format("{} by {:.4g}", names.back(), 0.01 * part * units(j)));
+  }
+  if (names.size() == 1) return names.front();
+  if (is_one_factor) return fmt::format("{}, all by one factor", fmt::join(names, ", "));
+  return fmt::format("{} together", fmt::join(changes, ", "));
+}
+
+/// The directions of these columns, by zeros and in units of the unknowns.
+void name_null_space(const Eigen::MatrixXd& directions, const std::vector<Guessed>& unknowns, Fit& fit) {
+  Eigen::VectorXd units(directions.rows());
+  for (Eigen::Index j = 0; j < units.size(); ++j) {
+    const double value = fit.unknowns[std::size_t(j)].value, size = unknowns[std::size_t(j)].size;
+    units(j) = std::abs(value) > 1e-6 * size ? value : size;
+  }
+  const Eigen::MatrixXd parts = with_zeros((units.cwiseInverse().asDiagonal() * directions).transpose());
+  fit.null_space = parts * units.asDiagonal();
+  for (Eigen::Index k = 0; k < parts.rows(); ++k)
+    fit.undetermined.push_back(in_words(parts.row(k), units, fit.unknowns));
+}
+
+/// Functions of the unknowns, of which some the data tell though they do not tell all unknowns. `lost` holds directions
+/// that they do not, in units `size`, a column each.
+void describe_combinations(const GradientSubject& subject, const FitOptions& options, const Eigen::MatrixXd& lost,
+                           const Eigen::VectorXd& size, Fit& fit) {
+  std::vector<std::string> names;
+  std::vector<double> values;
+  for (const Fit::Unknown& each : fit.unknowns) {
+    names.push_back(each.name);
+    values.push_back(each.value);
+  }
+  for (std::size_t i = 0; i < subject.parameters.size(); ++i) {
+    const std::string name = "parameters." + subject.parameters[i].name;
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    names.push_back(name);
+    values.push_back(subject.sizes[subject.start.size() + i]);
+  }
+  for (const NamedText& text : options.combinations) {
+    ComputedNumber function(text, names);
+    Fit::Combination out{text.first, function.evaluate(values)};
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(size.size());
+    for (std::size_t k = 0; k < function.used().size(); ++k)
+      if (const auto at = Eigen::Index(function.used()[k]); at < by.size()) by(at) = function.by()[k];
+    const Eigen::VectorXd scaled = by.cwiseQuotient(size);
+    const bool is_told = (lost.transpose() * scaled).norm() <= 1e-6 * scaled.norm();
+    out.deviation = is_told ? std::sqrt(by.dot(fit.covariance * by)) : infinite;
+    fit.combinations.push_back(out);
+  }
+}
+
+}  // namespace
+
+void describe_columns(const PredictedRuns& runs, Fit& fit) {
+  std::vector<double> squares(fit.columns.size()), products(fit.columns.size());
+  std::size_t index = 0;
+  for (std::size_t r = 0; r < runs.runs().size(); ++r) {
+    std::vector<std::optional<double>> last(fit.columns.size());
+    for (const MeasuredNumber& each : runs.runs()[r]) {
+      const double predicted = runs.predicted(index++);
+      const double off = each.value - predicted;
+      fit.points.push_back({r, each.time, each.column, each.value, predicted});
+      Fit::Column& column = fit.columns[each.column];
+      ++column.count;
+      column.largest = std::max(column.largest, std::abs(each.value));
+      squares[each.column] += off * off;
+      if (last[each.column]) products[each.column] += off * *last[each.column];
+      last[each.column] = off;
+    }
+  }
+  for (std::size_t c = 0; c < fit.columns.size(); ++c) {
+    Fit::Column& column = fit.columns[c];
+    if (column.count == 0) continue;
+    column.rms = std::sqrt(squares[c] / double(column.count));
+    column.correlation = squares[c] > 0 ? products[c] / squares[c] : 0;
+    column.white = column.exact() || std::abs(column.correlation) <= 3 / std::sqrt(double(column.count));
+  }
+}
+
+void describe_unknowns(const PredictedRuns& runs, const GradientSubject& subject, const std::vector<Guessed>& unknowns,
+                       const FitOptions& options, Fit& fit) {
+  const auto n = Eigen::Index(unknowns.size());
+  std::size_t count = 0;
+  for (const MeasuredRun& run : runs.runs()) count += run.size();
+  Eigen::MatrixXd weighted(Eigen::Index(count), n);
+  std::size_t index = 0;
+  double squares = 0;
+  for (const MeasuredRun& run : runs.runs())
+    for (const MeasuredNumber& each : run) {
+      const double residual = (runs.predicted(index) - each.value) / each.sigma;
+      // A residual beyond the bound of Huber's loss weighs less.
+      const double weight =
+          options.huber > 0 && std::abs(residual) > options.huber ? options.huber / std::abs(residual) : 1;
+      weighted.row(Eigen::Index(index)) = std::sqrt(weight) / each.sigma * runs.derivatives(index);
+      ++index;
+      squares += weight * residual * residual;
+    }
+  // What changes by an unknown's own size, and is rounding beside the others, is nothing.
+  Eigen::VectorXd size = weighted.colwise().norm();
+  Eigen::VectorXd effect = size;
+  for (Eigen::Index j = 0; j < n; ++j) effect(j) *= unknowns[std::size_t(j)].size;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (effect(j) > 1e-12 * effect.maxCoeff()) continue;
+    weighted.col(j).setZero();
+    size(j) = 1;
+  }
+  constexpr double not_told = 1e-10;  // of the derivatives, which are exact to round-off and grew on the way
+  const RightSingularVectors found = right_singular_vectors(weighted * size.cwiseInverse().asDiagonal(), not_told);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd lost = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::VectorXd direction = found.v.col(k);
+    if (k < found.rank) {
+      inverse += direction * direction.transpose() / (found.values(k) * found.values(k));
+    } else {
+      lost += direction.cwiseAbs2();
+    }
+  }
+  fit.rank = found.rank;
+  fit.singular_values = found.values;
+  name_null_space(size.cwiseInverse().asDiagonal() * found.v.rightCols(n - found.rank), unknowns, fit);
+  fit.scale = std::sqrt(squares / std::max(1.0, double(count) - double(found.rank)));
+  fit.covariance =
+      fit.scale * fit.scale * (size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal());
+  for (Eigen::Index j = 0; j < n; ++j) {
+    Fit::Unknown& unknown = fit.unknowns[std::size_t(j)];
+    unknown.deviation = lost(j) > 1e-6 ? infinite : std::sqrt(fit.covariance(j, j));
+    const auto [low, high] = unknowns[std::size_t(j)].bounds;
+    unknown.at_bound = unknown.value <= low || unknown.value >= high;
+  }
+  describe_combinations(subject, options, found.v.rightCols(n - found.rank), size, fit);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,204 @@
+#include "answer.hpp"
+
+#include <lagroid/solvers/poisson/wiener_path.hpp>
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// (y_i - d_i) / sigma_i.
+class Residual final : public ceres::CostFunction {
+ public:
+  Residual(const PredictedRuns& runs, std::size_t index, const MeasuredNumber& measurement)
+      : runs_(runs), index_(index), measurement_(measurement) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(int(runs.unknowns()));
+  }
+  bool Evaluate(double const* const*, double* residual, double** jacobians) const override {
+    if (!runs_.is_defined()) return false;
+    *residual = (runs_.predicted(index_) - measurement_.value) / measurement_.sigma;
+    if (jacobians != nullptr && jacobians[0] != nullptr)
+      Eigen::Map<Eigen::RowVectorXd>(jacobians[0], Eigen::Index(runs_.unknowns())) =
+          runs_.derivatives(index_) / measurement_.sigma;
+    return true;
+  }
+
+ private:
+  const PredictedRuns& runs_;
+  std::size_t index_;
+  const MeasuredNumber& measurement_;
+};
+
+std::array<double, 2> bounds_of(const std::string& name, double start, const FitOptions& options) {
+  const auto found = options.bounds.find(name);
+  if (found == options.bounds.end()) return {-infinite, infinite};
+  const auto [low, high] = found->second;
+  if (!(low <= start && start <= high))
+    throw GradientRefused(
+        fmt::format("{}: the scene has {:g}, which is not from {:g} to {:g}", name, start, low, high));
+  return found->second;
+}
+
+/// Names them in the fit, too.
+std::vector<Guessed> unknowns_of(const GradientSubject& subject, const GradientColumns& columns, std::size_t runs,
+                                 const FitOptions& options, Fit& fit) {
+  std::vector<Guessed> out;
+  const auto add = [&](const std::string& name, const std::string& of_run, double start) {
+    out.push_back({name, start, start != 0 ? std::abs(start) : 1, bounds_of(name, start, options)});
+    fit.unknowns.push_back({name + of_run, start});
+  };
+  for (std::size_t r = 0; r < runs; ++r)
+    for (const int i : columns.start) {
+      const GradientName& name = subject.start[std::size_t(i)];
+      if (name.group == "displacement")
+        throw GradientRefused(fmt::format(
+            "initial.{}: where a run starts is fitted on vector spaces alone; fit momenta and parameters", name.name));
+      add("initial." + name.name, runs > 1 ? fmt::format(" of run {}", r + 1) : "", subject.sizes[std::size_t(i)]);
+    }
+  for (const int i : columns.parameters)
+    add("parameters." + subject.parameters[std::size_t(i)].name, "",
+        subject.sizes[subject.start.size() + std::size_t(i)]);
+  if (out.empty()) throw GradientRefused("nothing is to be fitted; name what with --wrt");
+  return out;
+}
+
+/// One solve from where the runs stand; its cost, infinite where it failed.
+double solve(PredictedRuns& runs, const std::vector<Guessed>& unknowns, const FitOptions& options, Fit& fit) {
+  ceres::Problem::Options how;
+  how.evaluation_callback = &runs;
+  ceres::Problem problem(how);
+  std::size_t index = 0;
+  for (const MeasuredRun& run : runs.runs())
+    for (const MeasuredNumber& each : run) {
+      const std::size_t at = index++;
+      if (runs.is_within(each))
+        problem.AddResidualBlock(new Residual(runs, at, each),
+                                 options.huber > 0 ? new ceres::HuberLoss(options.huber) : nullptr, runs.x());
+    }
+  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+    const auto [low, high] = unknowns[j].bounds;
+    if (low > -infinite) problem.SetParameterLowerBound(runs.x(), int(j), low - unknowns[j].start);
+    if (high < infinite) problem.SetParameterUpperBound(runs.x(), int(j), high - unknowns[j].start);
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = 200;
+  solver.function_tolerance = 1e-14;
+  solver.parameter_tolerance = 1e-12;
+  solver.gradient_tolerance = 1e-14;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  fit.iterations += int(summary.iterations.size()) - 1;
+  if (!summary.IsSolutionUsable() || !std::isfinite(summary.final_cost)) {
+    fit.status = "failed";
+    return infinite;
+  }
+  fit.status = summary.termination_type == ceres::CONVERGENCE ? "converged" : "not_converged";
+  return summary.final_cost;
+}
+
+bool is_explained(const PredictedRuns& runs, Fit fit) {
+  describe_columns(runs, fit);
+  return std::all_of(fit.columns.begin(), fit.columns.end(), [](const Fit::Column& each) { return each.white; });
+}
+
+/// By what was measured first, then by more and more of it: far from the solution late times, at which runs differ
+/// most, lead astray.
+double solve_growing(PredictedRuns& runs, const std::vector<Guessed>& unknowns, const FitOptions& options, Fit& fit) {
+  double first = infinite, last = -infinite;
+  for (const MeasuredRun& run : runs.runs()) {
+    first = std::min(first, run.front().time);
+    last = std::max(last, run.back().time);
+  }
+  for (const double share : {0.125, 0.25, 0.5}) {
+    runs.end_at(first + share * (last - first));
+    solve(runs, unknowns, options, fit);
+  }
+  runs.end_at(infinite);
+  return solve(runs, unknowns, options, fit);
+}
+
+/// A solve from the guess that stands in the runs; where it leaves over what are no independent errors, another by
+/// growing parts of the data.
+double solve_from_guess(PredictedRuns& runs, const std::vector<Guessed>& unknowns, const FitOptions& options,
+                        Fit& fit) {
+  const std::size_t count = unknowns.size();
+  const std::vector<double> guess(runs.x(), runs.x() + count);
+  const double cost = solve(runs, unknowns, options, fit);
+  if (cost < infinite) {
+    runs.PrepareForEvaluation(false, true);
+    if (is_explained(runs, fit)) return cost;
+  }
+  const std::vector<double> found(runs.x(), runs.x() + count);
+  std::copy(guess.begin(), guess.end(), runs.x());
+  Fit other = fit;
+  const double better = solve_growing(runs, unknowns, options, other);
+  if (better < cost) {
+    fit = std::move(other);
+    return better;
+  }
+  std::copy(found.begin(), found.end(), runs.x());
+  return cost;
+}
+
+}  // namespace
+
+Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& files, const FitOptions& options) {
+  Fit fit;
+  fit.system = subject.system;
+  fit.runs = files.size();
+  const GradientColumns columns = columns_of(subject, options.unknowns);
+  std::vector<MeasuredRun> measured = read_measured(subject, files, options, fit);
+  const std::vector<Guessed> unknowns = unknowns_of(subject, columns, files.size(), options, fit);
+  for (const auto& [name, bounds] : options.bounds)
+    if (std::none_of(unknowns.begin(), unknowns.end(), [&](const Guessed& each) { return each.name == name; }))
+      throw GradientRefused(fmt::format("{}: it has bounds, but is not to be fitted", name));
+
+  PredictedRuns runs(subject, columns, std::move(measured));
+  runs.PrepareForEvaluation(true, true);  // what has no derivative is refused here, and not amid a solve
+  const std::string own_failure = runs.failure();
+  const WienerPath stream{.seed = options.seed};
+  Fit best = fit;
+  std::vector<double> costs, at_best;
+  for (int guess = 0; guess < options.starts; ++guess) {
+    for (std::size_t j = 0; j < unknowns.size(); ++j) {
+      const auto [low, high] = unknowns[j].bounds;
+      const double by =
+          guess == 0 ? 0 : options.spread * unknowns[j].size * stream.normals(guess, std::uint32_t(j / 2))[j % 2];
+      runs.x()[j] = std::clamp(unknowns[j].start + by, low, high) - unknowns[j].start;
+    }
+    Fit now = fit;
+    now.cost = solve_from_guess(runs, unknowns, options, now);
+    costs.push_back(now.cost);
+    if (at_best.empty() ? now.cost < infinite : now.cost < best.cost) {
+      best = std::move(now);
+      at_best.assign(runs.x(), runs.x() + unknowns.size());
+    }
+  }
+  if (at_best.empty()) {
+    best.status = "failed";
+    best.failure = options.starts == 1 && !own_failure.empty() ? own_failure : "no run from any guess came to its end";
+    return best;
+  }
+  std::sort(costs.begin(), costs.end());
+  best.other_costs.assign(costs.begin() + 1, costs.end());
+  std::copy(at_best.begin(), at_best.end(), runs.x());
+  runs.PrepareForEvaluation(true, true);
+  for (std::size_t j = 0; j < unknowns.size(); ++j) best.unknowns[j].value = unknowns[j].start + at_best[j];
+  describe_unknowns(runs, subject, unknowns, options, best);
+  describe_columns(runs, best);
+  return best;
+}
+
+}  // namespace lagroid::app

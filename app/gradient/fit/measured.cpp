@@ -1,0 +1,137 @@
+#include "measured.hpp"
+
+#include "../../reading/csv_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace lagroid::app {
+
+namespace {
+
+/// The times of a subject's nodes; no step where it varies.
+struct Nodes {
+  double start;
+  double step;
+};
+Nodes nodes_of(const GradientSubject& subject) {
+  if (subject.through_events) throw GradientRefused("a fit takes runs without events; leave out [[event]]");
+  if (subject.cost) throw GradientRefused("a fit takes initial values; a path between two ends has no column t to fit");
+  const auto motion = subject.begin({}, {});
+  const double start = motion->time();
+  if (!motion->has_equal_steps()) return {start, 0};
+  if (!motion->advance().converged()) throw GradientRefused("the first step of the scene's own run does not converge");
+  return {start, motion->time() - start};
+}
+
+/// Where steps vary, times are those of no node.
+long node_at(double time, const Nodes& nodes, const std::string& file, long line) {
+  if (nodes.step == 0) {
+    if (!(time >= nodes.start))
+      throw DataError(
+          fmt::format("{}: row {}: t = {:.10g} is before the start of the run, {:g}", file, line, time, nodes.start));
+    return -1;
+  }
+  const double steps = (time - nodes.start) / nodes.step;
+  const double nearest = std::round(steps);
+  if (!(nearest >= 0) || std::abs(steps - nearest) > 1e-6)
+    throw DataError(
+        fmt::format("{}: row {}: t = {:.10g} is no node of the run, which has them at {:g} + k {:g}; choose "
+                    "a time.step that divides the times",
+                    file, line, time, nodes.start, nodes.step));
+  return long(nearest);
+}
+
+/// One who reads the columns of several files.
+class Reader {
+ public:
+  Reader(const GradientSubject& subject, const FitOptions& options, Fit& fit)
+      : subject_(subject), options_(options), fit_(fit), nodes_(nodes_of(subject)) {
+    for (const auto& [name, sigma] : options.sigma) number_of(name);
+    for (const std::string& name : options.columns) column_of(name);
+  }
+
+  MeasuredRun read(const std::string& file) {
+    const CsvTable table = read_csv_table(file, "t and columns of the run", Gaps::allowed);
+    const std::size_t time = table.column("t");
+    if (time == CsvTable::npos) throw DataError(fmt::format("{}: no column t, the time, in the header", file));
+    MeasuredRun out;
+    for (std::size_t c = 0; c < table.names.size(); ++c) {
+      const std::string& name = table.names[c];
+      if (c == time) continue;
+      const auto column = wanted(name);
+      if (!column) continue;
+      const auto sigma = options_.sigma.find(name);
+      for (std::size_t k = 0; k < table.rows.size(); ++k) {
+        const double at = table.rows[k][time], value = table.rows[k][c];
+        if (!std::isfinite(at)) throw DataError(fmt::format("{}: row {}: it has no time", file, table.lines[k]));
+        if (std::isnan(value)) continue;
+        if (std::isinf(value))
+          throw DataError(fmt::format("{}: row {}: {} is infinite; leave the field empty", file, table.lines[k], name));
+        out.push_back({node_at(at, nodes_, file, table.lines[k]), at, number_of(name), *column, value,
+                       sigma == options_.sigma.end() ? 1 : sigma->second});
+      }
+    }
+    if (out.empty())
+      throw DataError(
+          fmt::format("{}: nothing in it is a column of the run; there are {}", file, fmt::join(names(), ", ")));
+    std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+    return out;
+  }
+
+ private:
+  std::vector<std::string> names() const {
+    std::vector<std::string> out;
+    for (const GradientName& each : subject_.observed) out.push_back(each.name);
+    return out;
+  }
+  int number_of(const std::string& name) const {
+    for (int i = 0; i < int(subject_.observed.size()); ++i)
+      if (subject_.observed[std::size_t(i)].name == name) return i;
+    throw GradientRefused(fmt::format("{}: no such column of the run; there are {}", name, fmt::join(names(), ", ")));
+  }
+  std::size_t column_of(const std::string& name) {
+    number_of(name);
+    for (std::size_t i = 0; i < fit_.columns.size(); ++i)
+      if (fit_.columns[i].name == name) return i;
+    fit_.columns.push_back({name});
+    return fit_.columns.size() - 1;
+  }
+  /// The column to be fitted of that name, if there is one.
+  std::optional<std::size_t> wanted(const std::string& name) {
+    const auto all = names();
+    const bool is_known = std::find(all.begin(), all.end(), name) != all.end();
+    const bool is_chosen = options_.columns.empty() ||
+                           std::find(options_.columns.begin(), options_.columns.end(), name) != options_.columns.end();
+    if (is_known && is_chosen) return column_of(name);
+    if (std::find(fit_.ignored.begin(), fit_.ignored.end(), name) == fit_.ignored.end()) fit_.ignored.push_back(name);
+    return std::nullopt;
+  }
+
+  const GradientSubject& subject_;
+  const FitOptions& options_;
+  Fit& fit_;
+  Nodes nodes_;
+};
+
+}  // namespace
+
+std::vector<MeasuredRun> read_measured(const GradientSubject& subject, const std::vector<std::string>& files,
+                                       const FitOptions& options, Fit& fit) {
+  std::vector<MeasuredRun> out;
+  Reader reader(subject, options, fit);
+  for (const std::string& file : files) out.push_back(reader.read(file));
+  for (const Fit::Column& column : fit.columns) {
+    const auto is_of_it = [&](const MeasuredNumber& each) { return &fit.columns[each.column] == &column; };
+    if (std::none_of(out.begin(), out.end(),
+                     [&](const MeasuredRun& run) { return std::any_of(run.begin(), run.end(), is_of_it); }))
+      throw DataError(fmt::format("{}: nothing is measured of it", column.name));
+  }
+  return out;
+}
+
+}  // namespace lagroid::app
