@@ -160,6 +160,7 @@ std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::s
       phase.through.push_back(through.has(state) ? std::optional(read_key_or(through, phase_keys::through(state), 0))
                                                  : std::nullopt);
     phase.on = read_formulas(table, on_key("on"), states);
+    through.finish();
     const bool is_last = out.size() + 1 == tables.size();
     for (const char* key : {"through", "on"})
       if (is_last && table.has(key)) table.fail(key, "the last phase ends where [boundary] says; leave it out");

@@ -67,14 +67,14 @@ template <> struct FlowStates<SO3> {
   static constexpr int size = 3;
   using State = Vector<double, 3>;
   static Matrix<double, 3, 3> arrow(const State& from, const State& to) {
-    return SO3::exp(from).transpose() * SO3::exp(to);
+    return SO3::multiply(SO3::inverse(SO3::exp(from)), SO3::exp(to));
   }
   template <class S> static Vector<S, 3> reached(const State& from, const Matrix<S, 3, 3>& g) {
-    return SO3::log(Matrix<S, 3, 3>(SO3::exp(from).template cast<S>() * g));
+    return SO3::log(SO3::multiply(SO3::exp(from).template cast<S>().eval(), g));
   }
   template <class S> static Vector<S, 3> offset(const State& from, const Matrix<S, 3, 3>& g, const State& to) {
-    const Matrix<double, 3, 3> between = SO3::exp(to).transpose() * SO3::exp(from);
-    return SO3::log(Matrix<S, 3, 3>(between.template cast<S>() * g));
+    const Matrix<double, 3, 3> between = SO3::multiply(SO3::inverse(SO3::exp(to)), SO3::exp(from));
+    return SO3::log(SO3::multiply(between.template cast<S>().eval(), g));
   }
   /// Whether number i is one of a rotation vector.
   static constexpr bool is_attitude(int) { return true; }
@@ -145,7 +145,8 @@ template <int N> struct FlowStates<Product<Action<SO3, RotatedDirections>, Pair<
   static Arrow arrow(const State& from, const State& to, const Vector<double, 3>& direction) {
     const Matrix<double, 3, 3> start = SO3::exp(Vector<double, 3>(from.template head<3>()));
     const Matrix<double, 3, 3> end = SO3::exp(Vector<double, 3>(to.template head<3>()));
-    return {{start.transpose() * end, start.transpose() * direction}, {from.template tail<N>(), to.template tail<N>()}};
+    return {{SO3::multiply(SO3::inverse(start), end), start.transpose() * direction},
+            {from.template tail<N>(), to.template tail<N>()}};
   }
   template <class A, class P> static auto reached(const State& from, const std::tuple<A, P>& g) {
     return Body::reached(from, std::tuple(std::get<0>(g).element, std::get<1>(g)));
