@@ -2,6 +2,7 @@
 
 #include <lagroid/run/files/output.hpp>
 #include <lagroid/run/reports/clock.hpp>
+#include <lagroid/run/reports/gnuplot.hpp>
 #include <lagroid/run/reports/markup.hpp>
 #include <lagroid/run/reports/text.hpp>
 
@@ -48,13 +49,6 @@ std::string trajectory_csv(const ControlResult& found) {
   return out;
 }
 
-/// A gnuplot string.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
-
 /// Where one phase ends and the next begins, with their names.
 std::string phase_borders(const ControlResult& found) {
   std::string out;
@@ -62,7 +56,8 @@ std::string phase_borders(const ControlResult& found) {
   for (const PhaseResult& each : found.phases) {
     if (begin > 0)
       out += fmt::format("set arrow from {0:.17g}, graph 0 to {0:.17g}, graph 1 nohead dashtype 3\n", begin);
-    out += fmt::format("set label {} at {:.17g}, graph 0.95 center\n", quoted(each.name), begin + each.duration / 2);
+    out += fmt::format("set label {} at {:.17g}, graph 0.95 center\n", gnuplot_string(each.name),
+                       begin + each.duration / 2);
     begin += each.duration;
   }
   return out;

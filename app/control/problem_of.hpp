@@ -18,6 +18,7 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,16 +30,15 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   using States = FlowStates<G>;
   using State = typename States::State;
 
-  /// A system of the library that is actuated has its own parameters.
-  static constexpr bool is_actuated = requires(Sys sys) { sys.system; };
-  static auto parametrised() {
-    if constexpr (is_actuated) {
-      return decltype(Sys::system)();
+  /// What has the parameters: of a system of the library that is actuated that system.
+  static auto& parametrised_of(Sys& sys) {
+    if constexpr (requires { sys.system; }) {
+      return sys.system;
     } else {
-      return Sys();
+      return sys;
     }
   }
-  using Parametrised = decltype(parametrised());
+  using Parametrised = std::remove_reference_t<decltype(parametrised_of(std::declval<Sys&>()))>;
 
   ControlProblemOf(std::string_view name, std::string_view summary) : name_(name), summary_(summary) {}
   std::string_view name() const override { return name_; }
@@ -52,7 +52,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     const double before = processor_time();
     ControlResult out;
     if (posed.scene.loop) {
-      const State start = Eigen::Map<const State>(posed.scene.start.data());
+      const State start = start_of(posed.scene);
       const ControlSearch<Sys> found = search(posed, keep_going);
       Loop loop(posed, found);
       out = close_loop(*this, loop, *posed.scene.loop, {start.begin(), start.end()}, keep_going);
@@ -108,14 +108,10 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   Posed read(const Section& scene) const {
     Posed posed;
     ControlTask<Sys>& task = posed.task;
-    if constexpr (is_actuated) {
-      task.system.system = read_parameters<Parametrised>(scene);
-    } else {
-      task.system = read_parameters<Parametrised>(scene);
-    }
+    parametrised_of(task.system) = read_parameters<Parametrised>(scene);
     posed.scene = read_control_scene(scene, states(), controls());
     const ControlScene& read = posed.scene;
-    task.boundary = arrow(task.system, Eigen::Map<const State>(read.start.data()), end_of(read));
+    task.boundary = arrow(task.system, start_of(read), end_of(read));
     if constexpr (requires { Sys::conserved; }) {
       task.free_end = Sys::conserved;
       for (std::size_t i = 0; i < read.start.size(); ++i)
@@ -144,7 +140,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   static void pose_ends(const Section& scene, Posed& posed) {
     const ControlScene& read = posed.scene;
     ControlTask<Sys>& task = posed.task;
-    const State start = Eigen::Map<const State>(read.start.data());
+    const State start = start_of(read);
     const auto pose = [&](const char* key, const std::vector<bool>& free, const State& at, const auto& on, auto& along,
                           auto& condition) {
       if (std::none_of(free.begin(), free.end(), [](bool each) { return each; })) return;
@@ -176,11 +172,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     phase.duration_is_free = read.duration_is_free;
     phase.shortest = read.shortest;
     phase.longest = read.longest;
-    if constexpr (is_actuated) {
-      phase.system.system = with_parameters(read.table, phase.system.system);
-    } else {
-      phase.system = with_parameters(read.table, phase.system);
-    }
+    parametrised_of(phase.system) = with_parameters(read.table, parametrised_of(phase.system));
     set_bounds(phase, read.bounds);
     phase.inequalities_hold = read.constraints_hold;
     // Where it might end: what is free there, in the share of the time that has passed.
@@ -190,7 +182,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       all += each.duration;
       if (&each <= &read) before += each.duration;
     }
-    const State start = Eigen::Map<const State>(posed.scene.start.data());
+    const State start = start_of(posed.scene);
     State at = start + before / all * (end_of(posed.scene) - start);
     typename StateCondition<G>::Given given{};
     std::vector<bool> free(given.size(), true);
@@ -216,6 +208,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     if (const auto refusal = refusal_of(system)) reading::blame(parameters, *refusal);
     return system;
   }
+  static State start_of(const ControlScene& scene) { return Eigen::Map<const State>(scene.start.data()); }
   static State end_of(const ControlScene& scene) { return Eigen::Map<const State>(scene.end.data()); }
   static ControlSearch<Sys> search(const Posed& posed, const std::function<bool(int)>& keep_going) {
     const ControlScene& scene = posed.scene;
@@ -233,7 +226,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     Loop(const Posed& posed, const ControlSearch<Sys>& found)
         : system_(posed.task.system),
           end_(end_of(posed.scene)),
-          state_(Eigen::Map<const State>(posed.scene.start.data())),
+          state_(start_of(posed.scene)),
           usable_(posed.scene.loop.value_or(LoopScene()).usable),
           loop_(posed.task, best_of(found), options(posed.scene)),
           report_(best_of(found).report) {
@@ -282,7 +275,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
 
   ControlResult described(const Posed& posed, const ControlSearch<Sys>& found) const {
     const G& groupoid = posed.task.system.groupoid;
-    const State start = Eigen::Map<const State>(posed.scene.start.data());
+    const State start = start_of(posed.scene);
     const ControlSolution<Sys>& best = best_of(found);
     ControlResult out;
     out.problem = name_;

@@ -75,19 +75,10 @@ class LinearisedFormula final : public LinearisedMotion {
     return out;
   }
 
-  std::vector<double> save() override {
-    std::vector<double> all(state_.position.begin(), state_.position.end());
-    all.insert(all.end(), state_.momentum.begin(), state_.momentum.end());
-    all.insert(all.end(), state_.velocity.begin(), state_.velocity.end());
-    all.push_back(double(index_));
-    return all;
-  }
-  void restore(const std::vector<double>& saved) override {
-    const Eigen::Index n = state_.position.size();
-    state_.position = Eigen::Map<const Eigen::VectorXd>(saved.data(), n);
-    state_.momentum = Eigen::Map<const Eigen::VectorXd>(saved.data() + n, n);
-    state_.velocity = Eigen::Map<const Eigen::VectorXd>(saved.data() + 2 * n, n);
-    index_ = long(saved.back());
+  void serialize(NumberArchive& archive) override {
+    for (Eigen::VectorXd* each : {&state_.position, &state_.momentum, &state_.velocity})
+      for (double& x : *each) archive(x);
+    archive(index_);
   }
 
  private:

@@ -34,8 +34,7 @@ class WithColumns final : public LinearisedMotion {
   bool linearise() override { return motion_->linearise(); }
   int stages() const override { return motion_->stages(); }
   const LinearStep& stage(int k) const override { return motion_->stage(k); }
-  std::vector<double> save() override { return motion_->save(); }
-  void restore(const std::vector<double>& saved) override { motion_->restore(saved); }
+  void serialize(NumberArchive& archive) override { motion_->serialize(archive); }
 
   NodeValues observe() const override { return completed(motion_->observe(), motion_->time()); }
   std::optional<NodeValues> observe_later(double time) override {

@@ -1,15 +1,28 @@
 """Studies, and the program that asks laws."""
 
+import contextlib
 import os
 import stat
 import tempfile
 import time
 import unittest
 from pathlib import Path
+from typing import Iterator
 from unittest import mock
 
 import lagroid
 from data import EXAMPLES
+
+
+@contextlib.contextmanager
+def stand_in(variable: str, script: str) -> Iterator[None]:
+    """In the place of the program that an environment variable names: they are built apart, and compile for minutes."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "program"
+        program.write_text("#!/bin/sh\n" + script)
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        with mock.patch.dict(os.environ, {variable: str(program)}):
+            yield
 
 
 class Studies(unittest.TestCase):
@@ -58,106 +71,82 @@ class Studies(unittest.TestCase):
         self.assertEqual(certificate["status"], "certified")
 
     def test_check_hands_over_to_its_program(self) -> None:
-        """The program is built apart (it compiles for minutes): here, one that prints what it was asked."""
-        with tempfile.TemporaryDirectory() as folder:
-            program = Path(folder) / "lagroid-check"
-            program.write_text('#!/bin/sh\nprintf \'{"arguments": "%s", "scene": "%s"}\' "$2 $3" "$(head -c 6 "$1")"\n')
-            program.chmod(program.stat().st_mode | stat.S_IXUSR)
-            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
-                found = lagroid.check(EXAMPLES / "kepler.toml", arguments=["--samples=5"])
-            self.assertEqual(found["arguments"], "--json --samples=5")
-            # A file is handed over as it is, because what it names stands beside it.
-            program.write_text('#!/bin/sh\nprintf \'{"scene": "%s", "set": "%s"}\' "$1" "$3 $4"\n')
-            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
-                found = lagroid.check(EXAMPLES / "learned_hamiltonian.toml", set={"time.steps": 3})
-            self.assertEqual(found["scene"], str(EXAMPLES / "learned_hamiltonian.toml"))
-            self.assertEqual(found["set"], "--set time.steps=3")
-            program.write_text('#!/bin/sh\necho "lagroid: $1: mistaken" >&2\nexit 2\n')
-            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
-                with self.assertRaisesRegex(lagroid.SceneError, "kepler.toml: mistaken"):
-                    lagroid.check(EXAMPLES / "kepler.toml")
-            program.write_text("#!/bin/sh\nexit 1\n")
-            with mock.patch.dict(os.environ, {"LAGROID_CHECK": str(program)}):
-                with self.assertRaises(lagroid.ProgramError):
-                    lagroid.check(EXAMPLES / "kepler.toml")
+        with stand_in("LAGROID_CHECK", 'printf \'{"arguments": "%s", "scene": "%s"}\' "$2 $3" "$(head -c 6 "$1")"\n'):
+            found = lagroid.check(EXAMPLES / "kepler.toml", arguments=["--samples=5"])
+        self.assertEqual(found["arguments"], "--json --samples=5")
+        # A file is handed over as it is, because what it names stands beside it.
+        with stand_in("LAGROID_CHECK", 'printf \'{"scene": "%s", "set": "%s"}\' "$1" "$3 $4"\n'):
+            found = lagroid.check(EXAMPLES / "learned_hamiltonian.toml", set={"time.steps": 3})
+        self.assertEqual(found["scene"], str(EXAMPLES / "learned_hamiltonian.toml"))
+        self.assertEqual(found["set"], "--set time.steps=3")
+        with stand_in("LAGROID_CHECK", 'echo "lagroid: $1: mistaken" >&2\nexit 2\n'):
+            with self.assertRaisesRegex(lagroid.SceneError, "kepler.toml: mistaken"):
+                lagroid.check(EXAMPLES / "kepler.toml")
+        with stand_in("LAGROID_CHECK", "exit 1\n"):
+            with self.assertRaises(lagroid.ProgramError):
+                lagroid.check(EXAMPLES / "kepler.toml")
 
     def test_gradient_hands_over_to_its_program(self) -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            program = Path(folder) / "lagroid-gradient"
-            program.write_text(
-                '#!/bin/sh\n[ "$2 $3 $4 $5 $6" = "--json --of final.x --wrt initial,parameters.strength" ] || exit 1\n'
-                'echo \'{"of": ["final.x"], "by": ["initial.x", "parameters.strength"], "values": [1.5],'
-                ' "derivatives": [[2, 3]], "growth": 4, "digits_left": 15}\'\n'
-            )
-            program.chmod(program.stat().st_mode | stat.S_IXUSR)
-            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
-                found = lagroid.gradient(
-                    EXAMPLES / "kepler.toml", of=["final.x"], wrt=["initial", "parameters.strength"]
-                )
+        script = (
+            '[ "$2 $3 $4 $5 $6" = "--json --of final.x --wrt initial,parameters.strength" ] || exit 1\n'
+            'echo \'{"of": ["final.x"], "by": ["initial.x", "parameters.strength"], "values": [1.5],'
+            ' "derivatives": [[2, 3]], "growth": 4, "digits_left": 15}\'\n'
+        )
+        with stand_in("LAGROID_GRADIENT", script):
+            found = lagroid.gradient(EXAMPLES / "kepler.toml", of=["final.x"], wrt=["initial", "parameters.strength"])
         self.assertEqual(found.derivatives.tolist(), [[2, 3]])
         self.assertEqual(found.by[1], "parameters.strength")
         self.assertIsNone(found.differences)
 
     def test_uncertainty_hands_over_to_the_same_program(self) -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            program = Path(folder) / "lagroid-gradient"
-            program.write_text(
-                '#!/bin/sh\n[ "$*" = "$1 --json --of final.x --deviations initial.momentum=0.01 --draws 10 --seed 3" ] '
-                "|| exit 1\n"
-                'echo \'{"of": ["final.x"], "by": ["initial.px"], "values": [1.5], "derivatives": [[2]],'
-                ' "deviations": [0.01], "covariance": [[4e-4]], "draws": {"mean": [1.4], "covariance": [[5e-4]]}}\'\n'
+        script = (
+            '[ "$*" = "$1 --json --of final.x --deviations initial.momentum=0.01 --draws 10 --seed 3" ] || exit 1\n'
+            'echo \'{"of": ["final.x"], "by": ["initial.px"], "values": [1.5], "derivatives": [[2]],'
+            ' "deviations": [0.01], "covariance": [[4e-4]], "draws": {"mean": [1.4], "covariance": [[5e-4]]}}\'\n'
+        )
+        with stand_in("LAGROID_GRADIENT", script):
+            found = lagroid.uncertainty(
+                EXAMPLES / "kepler.toml", {"initial.momentum": 0.01}, of=["final.x"], draws=10, seed=3
             )
-            program.chmod(program.stat().st_mode | stat.S_IXUSR)
-            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
-                found = lagroid.uncertainty(
-                    EXAMPLES / "kepler.toml", {"initial.momentum": 0.01}, of=["final.x"], draws=10, seed=3
-                )
         self.assertEqual(found.covariance.tolist(), [[4e-4]])
         assert found.drawn_mean is not None
         self.assertEqual(found.drawn_mean.tolist(), [1.4])
 
     def test_uncertainty_of_what_was_fitted_gives_the_program_the_fit(self) -> None:
         fitted = {"unknowns": [{"name": "initial.px", "value": 1.5, "deviation": 0.01}], "covariance": [[1e-4]]}
-        with tempfile.TemporaryDirectory() as folder:
-            program = Path(folder) / "lagroid-gradient"
-            program.write_text(
-                '#!/bin/sh\n[ "$3 $4 $5 $6 $7" = "--of final.r --column r=sqrt(x^2 + y^2) --covariance" ] || exit 1\n'
-                'grep -q initial.px "$8" || exit 1\n'
-                'echo \'{"of": ["final.r"], "by": ["initial.px"], "values": [1.5], "derivatives": [[2]],'
-                ' "deviations": [0.01], "covariance": [[4e-4]]}\'\n'
+        script = (
+            '[ "$3 $4 $5 $6 $7" = "--of final.r --column r=sqrt(x^2 + y^2) --covariance" ] || exit 1\n'
+            'grep -q initial.px "$8" || exit 1\n'
+            'echo \'{"of": ["final.r"], "by": ["initial.px"], "values": [1.5], "derivatives": [[2]],'
+            ' "deviations": [0.01], "covariance": [[4e-4]]}\'\n'
+        )
+        with stand_in("LAGROID_GRADIENT", script):
+            found = lagroid.uncertainty(
+                EXAMPLES / "kepler.toml", fitted=fitted, of=["final.r"], columns={"r": "sqrt(x^2 + y^2)"}
             )
-            program.chmod(program.stat().st_mode | stat.S_IXUSR)
-            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
-                found = lagroid.uncertainty(
-                    EXAMPLES / "kepler.toml", fitted=fitted, of=["final.r"], columns={"r": "sqrt(x^2 + y^2)"}
-                )
         self.assertEqual(found.covariance.tolist(), [[4e-4]])
         self.assertIsNone(found.drawn_mean)
         with self.assertRaises(ValueError):
             lagroid.uncertainty(EXAMPLES / "kepler.toml")
 
     def test_fit_hands_over_to_the_same_program(self) -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            program = Path(folder) / "lagroid-gradient"
-            program.write_text(
-                '#!/bin/sh\n[ "$*" = "fit $2 --json a.csv --wrt initial --sigma x=0.1 --bounds parameters.strength=0.5:2.0"'
-                " ] || exit 1\n"
-                'echo \'{"status": "converged", "message": "", "unknowns": [{"name": "initial.px", "value": 1.5}]}\'\n'
+        script = (
+            '[ "$*" = "fit $2 --json a.csv --wrt initial --sigma x=0.1 --bounds parameters.strength=0.5:2.0" ]'
+            " || exit 1\n"
+            'echo \'{"status": "converged", "message": "", "unknowns": [{"name": "initial.px", "value": 1.5}]}\'\n'
+        )
+        with stand_in("LAGROID_GRADIENT", script):
+            found = lagroid.fit(
+                EXAMPLES / "kepler.toml",
+                ["a.csv"],
+                ["initial"],
+                sigma={"x": 0.1},
+                bounds={"parameters.strength": (0.5, 2.0)},
             )
-            program.chmod(program.stat().st_mode | stat.S_IXUSR)
-            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
-                found = lagroid.fit(
-                    EXAMPLES / "kepler.toml",
-                    ["a.csv"],
-                    ["initial"],
-                    sigma={"x": 0.1},
-                    bounds={"parameters.strength": (0.5, 2.0)},
-                )
-            self.assertEqual(found["unknowns"][0]["value"], 1.5)
-            program.write_text('#!/bin/sh\necho \'{"status": "failed", "message": "run 1 fails"}\'\nexit 3\n')
-            with mock.patch.dict(os.environ, {"LAGROID_GRADIENT": str(program)}):
-                with self.assertRaisesRegex(lagroid.SolveError, "run 1 fails"):
-                    lagroid.fit(EXAMPLES / "kepler.toml", ["a.csv"], ["initial"])
+        self.assertEqual(found["unknowns"][0]["value"], 1.5)
+        with stand_in("LAGROID_GRADIENT", 'echo \'{"status": "failed", "message": "run 1 fails"}\'\nexit 3\n'):
+            with self.assertRaisesRegex(lagroid.SolveError, "run 1 fails"):
+                lagroid.fit(EXAMPLES / "kepler.toml", ["a.csv"], ["initial"])
 
     def test_check_without_its_program_says_how_to_build_it(self) -> None:
         with mock.patch("lagroid.programs._lagroid.__file__", "/nowhere/python/lagroid/_lagroid.so", create=True):

@@ -65,12 +65,12 @@ struct ActuatedSystem
   template <class A, class S>
   Vector<S, 2 * rank + reactions> constraint(const A& g, const AllControls<S>& all, const S& h) const {
     Vector<S, 2 * rank + reactions> out = without_slopes(g, all, h);
+    const Vector<S, rank> none = Vector<S, rank>::Constant(S(0.0));
     for (int i = 0; i < rank; ++i) {
-      Vector<S, rank> none = Vector<S, rank>::Constant(S(0.0));
       Vector<S, rank> one = none;
       one(i) = S(1.0);
-      out(i) += slope(std::get<0>(g), h, one, none);
-      out(rank + i) += slope(std::get<0>(g), h, none, one);
+      out(i) += slope(std::get<0>(g), all, h, one, none);
+      out(rank + i) += slope(std::get<0>(g), all, h, none, one);
     }
     return out;
   }
@@ -86,7 +86,7 @@ struct ActuatedSystem
       source(i) = S(lambda[i]);
       target(i) = S(lambda[rank + i]);
     }
-    return sum + slope(std::get<0>(g), h, source, target);
+    return sum + slope(std::get<0>(g), all, h, source, target);
   }
   template <class S, class Q>
   Vector<S, ties> node_constraint(const std::tuple<Q, Vector<S, rank>>& state) const requires(ties > 0) {
@@ -98,12 +98,13 @@ struct ActuatedSystem
   void settle(ControlTrajectory<Derived>& path) const {
     using Momentum = Vector<double, rank>;
     const Momentum none = Momentum::Zero();
+    const AllControls<double> at_rest = AllControls<double>::Zero();
     for (std::size_t k = 1; k < path.arrows.size(); ++k) {
       auto& [before, reached] = path.arrows[k - 1];
       auto& [after, left] = path.arrows[k];
       for (int i = 0; i < rank; ++i)
-        reached.target(i) = 0.5 * (slope(before, path.step(long(k) - 1), none, Momentum(Momentum::Unit(i))) -
-                                   slope(after, path.step(long(k)), Momentum(Momentum::Unit(i)), none));
+        reached.target(i) = 0.5 * (slope(before, at_rest, path.step(long(k) - 1), none, Momentum(Momentum::Unit(i))) -
+                                   slope(after, at_rest, path.step(long(k)), Momentum(Momentum::Unit(i)), none));
       left.source = reached.target;
     }
   }
@@ -111,21 +112,7 @@ struct ActuatedSystem
  private:
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 
-  /// d<lambda, C>/dv_i of C(q) at the source of tau(v)^{-1} g, at v = 0.
-  template <class S> S pull(const MotionArrow<S>& g, const AllControls<S>& all, int i) const {
-    using D = Dual<S>;
-    Vector<D, rank> still;
-    for (int j = 0; j < rank; ++j) still(j) = D(S(0.0), S(0.0));
-    Vector<D, rank> moved = still;
-    moved(i).derivative = S(1.0);
-    const auto displaced = system.groupoid.translate(moved, system.groupoid.template cast<D>(g), still);
-    const Vector<D, ties> c = system.object_constraint(system.groupoid.source(displaced));
-    S sum(0.0);
-    for (int a = 0; a < ties; ++a) sum += c(a).derivative * all(ControlCount + reactions + a);
-    return sum;
-  }
-
-  /// The equations without the derivatives of L.
+  /// The equations without derivatives of L and of object constraints.
   template <class A, class S>
   Vector<S, 2 * rank + reactions> without_slopes(const A& g, const AllControls<S>& all, const S& h) const {
     const auto& [arrow, momentum] = g;
@@ -154,13 +141,13 @@ struct ActuatedSystem
         out(2 * rank + a) = phi(a);
       }
     }
-    if constexpr (ties > 0)
-      for (int i = 0; i < rank; ++i) out(i) += pull(arrow, all, i);
     return out;
   }
-  /// d/de L(tau(e a)^{-1} g tau(e b)) at e = 0.
+  /// d/de (L(g') + <kappa, C(q')>) at e = 0, g' = tau(e a)^{-1} g tau(e b) from q' on, kappa the multipliers of the
+  /// object constraints.
   template <class S>
-  S slope(const MotionArrow<S>& g, const S& h, const Vector<S, rank>& a, const Vector<S, rank>& b) const {
+  S slope(const MotionArrow<S>& g, const AllControls<S>& all, const S& h, const Vector<S, rank>& a,
+          const Vector<S, rank>& b) const {
     using D = Dual<S>;
     Vector<D, rank> at_source;
     Vector<D, rank> at_target;
@@ -170,7 +157,12 @@ struct ActuatedSystem
     }
     const MotionArrow<D> displaced =
         system.groupoid.translate(at_source, system.groupoid.template cast<D>(g), at_target);
-    return D(system.lagrangian(displaced, D(h, S(0.0)))).derivative;
+    S out = D(system.lagrangian(displaced, D(h, S(0.0)))).derivative;
+    if constexpr (ties > 0) {
+      const Vector<D, ties> c = system.object_constraint(system.groupoid.source(displaced));
+      for (int k = 0; k < ties; ++k) out += c(k).derivative * all(ControlCount + reactions + k);
+    }
+    return out;
   }
 };
 

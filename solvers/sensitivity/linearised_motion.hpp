@@ -8,6 +8,7 @@
 /// the basis of the displaced object; those of steps that vary have more. `LinearisedMotionOf` makes one of a system
 /// and its integrator.
 
+#include <lagroid/core/number_archive.hpp>
 #include <lagroid/solvers/sensitivity/linear_step.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
 
@@ -50,9 +51,18 @@ class LinearisedMotion {
   /// node. None where that step has no root, or where the motion has no such steps.
   virtual std::optional<NodeValues> observe_later(double /*time*/) { return std::nullopt; }
 
-  /// All that the next step goes on from, and back to it: the steps from there have the same bits.
-  virtual std::vector<double> save() = 0;
-  virtual void restore(const std::vector<double>& saved) = 0;
+  /// Visits all that the next step goes on from.
+  virtual void serialize(NumberArchive& archive) = 0;
+  /// Its numbers, and back to them: the steps from there have the same bits.
+  std::vector<double> save() {
+    NumberArchive archive;
+    serialize(archive);
+    return archive.numbers();
+  }
+  void restore(const std::vector<double>& saved) {
+    NumberArchive archive(saved);
+    serialize(archive);
+  }
 };
 
 }  // namespace lagroid

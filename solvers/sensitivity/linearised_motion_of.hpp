@@ -75,7 +75,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
       set_time_step(system_, size);
       set_time(system_, start);
       linearise_step(system_, step, places_.members, stages_[used_]);
-      if (!std::exchange(compared_, true)) compare(step, stages_[used_]);
+      if (!std::exchange(compared_, true)) detail::compare_with_differences(system_, places_, step, stages_[used_]);
       finite = stages_[used_].factor() && finite;
       duration += size;
       ++used_;
@@ -97,24 +97,9 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
                              });
   }
 
-  std::vector<double> save() override {
-    NumberArchive archive;
-    integrator_->serialize(archive);
-    return archive.numbers();
-  }
-  void restore(const std::vector<double>& saved) override {
-    NumberArchive archive(saved);
-    integrator_->serialize(archive);
-  }
+  void serialize(NumberArchive& archive) override { integrator_->serialize(archive); }
 
  private:
-  /// Each parameter, beside differences.
-  void compare(const Step<Sys>& step, const LinearStep& linear) {
-    for (std::size_t j = 0; j < places_.members.size(); ++j)
-      detail::compare_with_differences(system_, const_cast<double&>(*places_.members[j]),  // of system_, no constant
-                                       places_.names[j], step, linear, 2 * n + int(j));
-  }
-
   Sys system_;
   std::unique_ptr<Integrator<Sys>> integrator_;
   ParameterPlaces places_;

@@ -33,15 +33,6 @@ NodeValues LinearisedPoissonMotion::observe() const {
           Eigen::MatrixXd::Identity(states_, states_ + parameters())};
 }
 
-std::vector<double> LinearisedPoissonMotion::save() {
-  NumberArchive archive;
-  integrator_->serialize(archive);
-  return archive.numbers();
-}
-
-void LinearisedPoissonMotion::restore(const std::vector<double>& saved) {
-  NumberArchive archive(saved);
-  integrator_->serialize(archive);
-}
+void LinearisedPoissonMotion::serialize(NumberArchive& archive) { integrator_->serialize(archive); }
 
 }  // namespace lagroid

@@ -35,8 +35,7 @@ class LinearisedPoissonMotion final : public LinearisedMotion {
   int stages() const override { return 1; }
   const LinearStep& stage(int) const override { return stage_; }
   NodeValues observe() const override;
-  std::vector<double> save() override;
-  void restore(const std::vector<double>& saved) override;
+  void serialize(NumberArchive& archive) override;
 
  private:
   std::unique_ptr<PoissonIntegrator> integrator_;

@@ -87,6 +87,15 @@ void compare_with_differences(const Sys& system, double& member, const std::stri
   require_derivative(name, derivative, difference(width), difference(width / 2), at(here).norm() / width);
 }
 
+/// Those by each parameter, whose columns are behind those of the start.
+template <DiscreteSystem Sys>
+void compare_with_differences(const Sys& system, const ParameterPlaces& places, const Step<Sys>& step,
+                              const LinearStep& linear) {
+  for (std::size_t j = 0; j < places.members.size(); ++j)
+    compare_with_differences(system, const_cast<double&>(*places.members[j]),  // of the system, no constant
+                             places.names[j], step, linear, 2 * Sys::dimension + Eigen::Index(j));
+}
+
 }  // namespace detail
 
 }  // namespace lagroid

@@ -78,10 +78,11 @@ TrajectoryPoint<Sys> end_of_run(const Sys& system, const State<typename Sys::Gro
   return point;
 }
 
-/// f'(0), by central differences over two widths, extrapolated three times.
-inline Eigen::VectorXd extrapolated_difference(const std::function<Eigen::VectorXd(double)>& f, double width) {
+/// f'(0), by central differences of so many widths, each half of the one before, extrapolated.
+inline Eigen::VectorXd extrapolated_difference(const std::function<Eigen::VectorXd(double)>& f, double width,
+                                               int widths = 3) {
   std::vector<Eigen::VectorXd> row;
-  for (int level = 0; level < 3; ++level, width /= 2) {
+  for (int level = 0; level < widths; ++level, width /= 2) {
     Eigen::VectorXd next = (f(width) - f(-width)) / (2 * width);
     double power = 4;
     for (Eigen::VectorXd& each : row) {

@@ -185,6 +185,16 @@ TEST_F(Control, AGateIsPassedWhereTheWayIsShortest) {
   EXPECT_NEAR(nlohmann::json::parse(by_ipopt.out).at("cost").get<double>(), found.at("cost").get<double>(), 1e-8);
 }
 
+TEST_F(Control, NamesOfPhasesAreTextToGnuplot) {
+  const fs::path out = folder_ / "named";
+  const Outcome r = run(scene("through_a_gate") + " --set \"phase.0.name=\\\"driver's way\\\"\" --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  std::ifstream plot(out / "plot.gp");
+  const std::string script{std::istreambuf_iterator<char>(plot), {}};
+  EXPECT_NE(script.find("set label 'driver''s way'"), std::string::npos);
+  EXPECT_TRUE(fs::exists(out / "plot.svg"));
+}
+
 TEST_F(Control, MistakesOfPhasesAndEndsAreOneLine) {
   const auto refused = [&](const std::string& name, const std::string& set, const std::string& words) {
     const Outcome r = run(scene(name) + " --set '" + set + "'");
@@ -196,6 +206,7 @@ TEST_F(Control, MistakesOfPhasesAndEndsAreOneLine) {
   refused("through_a_gate", "phase.1.through.x=1", "the last phase ends where [boundary] says");
   refused("through_a_gate", "phase.0.through.z=1", "unknown");
   refused("through_a_gate", "phase.1.name=\"to the gate\"", "the name of another phase");
+  refused("through_a_gate", "phase.0.name=\"a\\nexit\"", "control character");
   refused("through_a_gate", "phase.0.bounds.curvature=[1.0, -1.0]", "1 is not below -1");
   refused("through_a_gate", "phase.0.duration=0", "positive");
   refused("through_a_gate", "phase.0.range=[4.0, 5.0]", "is not between 4 and 5");

@@ -75,15 +75,7 @@ template <SplitSystem Sys> class LinearisedSplitting final : public LinearisedMo
                              });
   }
 
-  std::vector<double> save() override {
-    NumberArchive archive;
-    integrator_.serialize(archive);
-    return archive.numbers();
-  }
-  void restore(const std::vector<double>& saved) override {
-    NumberArchive archive(saved);
-    integrator_.serialize(archive);
-  }
+  void serialize(NumberArchive& archive) override { integrator_.serialize(archive); }
 
  private:
   /// Each parameter, beside differences of the step.

@@ -77,7 +77,7 @@ template <VariedTimeScale Sys> class LinearisedControlledMotion final : public L
     extended_.origin = point().time - h;
     const Step<Extended> step = extended_step(point().step, h);
     linearise_step(extended_, step, places_.members, extended_step_);
-    if (!std::exchange(compared_, true)) compare(step);
+    if (!std::exchange(compared_, true)) detail::compare_with_differences(extended_, places_, step, extended_step_);
     arrange();
     // t1 - t0 = epsilon / rho, and rho = epsilon / h.
     stage_.equations_by_start(time_equation, density_place) = h * h / first_step_;
@@ -109,15 +109,7 @@ template <VariedTimeScale Sys> class LinearisedControlledMotion final : public L
     return detail::before_step(detail::observe_timed(extended_.base, places_, *to, size, observe_), stage_);
   }
 
-  std::vector<double> save() override {
-    NumberArchive archive;
-    integrator_.serialize(archive);
-    return archive.numbers();
-  }
-  void restore(const std::vector<double>& saved) override {
-    NumberArchive archive(saved);
-    integrator_.serialize(archive);
-  }
+  void serialize(NumberArchive& archive) override { integrator_.serialize(archive); }
 
  private:
   static constexpr int equations = Extended::dimension + Extended::constraints;
@@ -170,13 +162,6 @@ template <VariedTimeScale Sys> class LinearisedControlledMotion final : public L
       each->col(density_place).setZero();
       *each += by_density * by;
     }
-  }
-  /// Each parameter, beside differences.
-  void compare(const Step<Extended>& step) {
-    for (std::size_t j = 0; j < places_.members.size(); ++j)
-      detail::compare_with_differences(extended_,
-                                       const_cast<double&>(*places_.members[j]),  // of extended_, no constant
-                                       places_.names[j], step, extended_step_, 2 * Extended::dimension + int(j));
   }
 
   ControlledIntegrator<Sys> integrator_;

@@ -107,7 +107,7 @@ class LinearisedTimedMotion final : public LinearisedMotion {
     extended_.origin = point().time - h;
     const Step<Extended> step = last_step();
     linearise_step(extended_, step, members_, extended_step_);
-    if (!std::exchange(compared_, true)) compare(step);
+    if (!std::exchange(compared_, true)) detail::compare_with_differences(extended_, places_, step, extended_step_);
     Eigen::RowVectorXd epsilon_by_unknowns = Eigen::RowVectorXd::Zero(equations);
     Eigen::RowVectorXd epsilon_by_start = Eigen::RowVectorXd::Zero(extended_step_.equations_by_start.cols());
     if constexpr (prescribed) {
@@ -144,15 +144,7 @@ class LinearisedTimedMotion final : public LinearisedMotion {
     return detail::before_step(detail::observe_timed(extended_.base, places_, *to, size, observe_), stage_);
   }
 
-  std::vector<double> save() override {
-    NumberArchive archive;
-    integrator_.serialize(archive);
-    return archive.numbers();
-  }
-  void restore(const std::vector<double>& saved) override {
-    NumberArchive archive(saved);
-    integrator_.serialize(archive);
-  }
+  void serialize(NumberArchive& archive) override { integrator_.serialize(archive); }
 
  private:
   static constexpr int equations = Extended::dimension + Extended::constraints;
@@ -224,13 +216,6 @@ class LinearisedTimedMotion final : public LinearisedMotion {
         stage_.end_by_start(row, k) = extended_step_.end_by_start(place(row), place(k));
       if constexpr (prescribed) stage_.end_by_start(size - 1, k) = epsilon_by_start(place(k));
     }
-  }
-  /// Each parameter, beside differences.
-  void compare(const Step<Extended>& step) {
-    for (std::size_t j = 0; j < places_.members.size(); ++j)
-      detail::compare_with_differences(extended_,
-                                       const_cast<double&>(*places_.members[j]),  // of extended_, no constant
-                                       places_.names[j], step, extended_step_, 2 * Extended::dimension + int(j));
   }
 
   typename Steps::Integrating integrator_;

@@ -33,6 +33,7 @@ template <int N> struct FlowStates<Pair<N>> {
   template <class S> static Vector<S, N> offset(const State&, const PairArrow<S, N>& g, const State& to) {
     return g.target - to.template cast<S>();
   }
+  /// Whether number i is one of a rotation vector.
   static constexpr bool is_attitude(int) { return false; }
 };
 
@@ -76,7 +77,6 @@ template <> struct FlowStates<SO3> {
     const Matrix<double, 3, 3> between = SO3::multiply(SO3::inverse(SO3::exp(to)), SO3::exp(from));
     return SO3::log(SO3::multiply(between.template cast<S>().eval(), g));
   }
-  /// Whether number i is one of a rotation vector.
   static constexpr bool is_attitude(int) { return true; }
 };
 

@@ -184,16 +184,7 @@ NodeValues LinearisedScene::observe() const {
   return out;
 }
 
-std::vector<double> LinearisedScene::save() {
-  NumberArchive archive;
-  motion_.serialize(archive);
-  return archive.numbers();
-}
-
-void LinearisedScene::restore(const std::vector<double>& saved) {
-  NumberArchive archive(saved);
-  motion_.serialize(archive);
-}
+void LinearisedScene::serialize(NumberArchive& archive) { motion_.serialize(archive); }
 
 namespace {
 

@@ -60,8 +60,7 @@ class LinearisedScene final : public LinearisedMotion {
   int stages() const override { return int(linear_.size()); }
   const LinearStep& stage(int k) const override { return linear_[std::size_t(k)]; }
   NodeValues observe() const override;
-  std::vector<double> save() override;
-  void restore(const std::vector<double>& saved) override;
+  void serialize(NumberArchive& archive) override;
 
   /// The derivative of a start by what displaces it (`displace`): a projection onto what the joints allow.
   Eigen::MatrixXd allowed_directions() const;

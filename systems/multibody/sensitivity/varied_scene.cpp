@@ -298,6 +298,7 @@ void VariedScene::project(const SceneSizes& sizes, double h, std::vector<VariedV
 }
 
 VariedNumbers VariedScene::observe(const SceneState& node, const SceneSizes& sizes, int first) {
+  if (observe_ == nullptr) return {};
   place(node, sizes, first);
   project(sizes, node.step, momentum_, spin_);
   V kinetic = 0, potential = 0;
@@ -307,7 +308,6 @@ VariedNumbers VariedScene::observe(const SceneState& node, const SceneSizes& siz
     kinetic += 0.5 * spin_[r].cwiseQuotient(model_.factors.moments[r]).dot(spin_[r]);
   for (const Model::Acting& each : model_.effects)
     if (model_.is_on(each)) potential += each.effects->energy(before_);
-  if (observe_ == nullptr) return {};
   return observe_({model_, before_, momentum_, spin_, quaternions_, kinetic, potential});
 }
 

@@ -73,8 +73,9 @@ class Forgetful final : public LinearisedMotion {
   int stages() const override { return motion_.stages(); }
   const LinearStep& stage(int k) const override { return motion_.stage(k); }
   NodeValues observe() const override { return motion_.observe(); }
-  std::vector<double> save() override { return motion_.save(); }
-  void restore(const std::vector<double>&) override {}
+  void serialize(NumberArchive& archive) override {
+    if (!archive.reading()) motion_.serialize(archive);
+  }
 
  private:
   LinearisedMotion& motion_;

@@ -1,6 +1,9 @@
 // Derivatives of runs by controlled steps, and of what is seen between the nodes of runs whose steps vary.
 
+#include "held_sizes.hpp"
+
 #include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
+#include <lagroid/solvers/testing/sensitivity_laws.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulums/pendulum.hpp>
 #include <lagroid/systems/pendulums/spherical_pendulum.hpp>
@@ -15,6 +18,8 @@
 
 namespace lagroid {
 namespace {
+
+using sensitivity_tests::end_of_sizes_held_fixed;
 
 constexpr long steps = 60;
 
@@ -54,11 +59,7 @@ template <class Sys> Case<Sys> moved(Case<Sys> from, int which, double by) {
 template <class Sys>
 Eigen::VectorXd difference(const Case<Sys>& from, int which,
                            const std::function<Eigen::VectorXd(const Case<Sys>&)>& value) {
-  std::vector<Eigen::VectorXd> central;
-  for (const double width : {1e-3, 5e-4, 2.5e-4})
-    central.emplace_back((value(moved(from, which, width)) - value(moved(from, which, -width))) / (2 * width));
-  const Eigen::VectorXd coarse = (4 * central[1] - central[0]) / 3, fine = (4 * central[2] - central[1]) / 3;
-  return (16 * fine - coarse) / 15;
+  return laws::detail::extrapolated_difference([&](double by) { return value(moved(from, which, by)); }, 1e-3);
 }
 
 template <class Sys> void expect_differences(const Case<Sys>& from) {
@@ -129,16 +130,7 @@ TEST(ControlledSensitivities, WithConstraintsOfPlacesToo) {
 TEST(ControlledSensitivities, OfSizesHeldFixedMissTheDifferences) {
   const Case<Kepler> from = ellipse();
   auto motion = motion_of<Kepler, TimeMode::controlled>(from);
-  Kepler kepler = from.system;
-  Eigen::MatrixXd held = Eigen::MatrixXd::Identity(4, 4);
-  for (long k = 0; k < steps; ++k) {
-    ASSERT_TRUE(motion.advance().converged());
-    kepler.h = motion.point().step_size;
-    LinearStep step(2, 4, 0);
-    linearise_step(kepler, motion.point().step, {}, step);
-    ASSERT_TRUE(step.factor());
-    held = step.forward(held);
-  }
+  const Eigen::MatrixXd held = end_of_sizes_held_fixed(motion, from.system, steps);
   const Eigen::VectorXd differences = difference<Kepler>(from, 0, [](const Case<Kepler>& at) -> Eigen::VectorXd {
     auto run = motion_of<Kepler, TimeMode::controlled>(at);
     for (long k = 0; k < steps; ++k) EXPECT_TRUE(run.advance().converged());

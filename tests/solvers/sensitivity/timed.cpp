@@ -1,5 +1,7 @@
 // Derivatives of runs whose steps vary: adaptive ones, which keep the discrete energy, and prescribed ones.
 
+#include "held_sizes.hpp"
+
 #include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/rotations/rigid_body.hpp>
@@ -13,6 +15,8 @@
 
 namespace lagroid {
 namespace {
+
+using sensitivity_tests::end_of_sizes_held_fixed;
 
 constexpr long steps = 40;
 
@@ -161,16 +165,7 @@ TEST(TimedSensitivities, OfPrescribedStepsAreWhatDifferencesTendTo) {
 TEST(TimedSensitivities, OfSizesHeldFixedMissTheDifferences) {
   const Drawn<Kepler> from = draw_kepler(1);
   auto motion = motion_of<TimeMode::adaptive>(from);
-  Kepler kepler = from.system;
-  Eigen::MatrixXd held = Eigen::MatrixXd::Identity(4, 4);
-  for (long k = 0; k < steps; ++k) {
-    ASSERT_TRUE(motion.advance().converged());
-    kepler.h = motion.point().step_size;
-    LinearStep step(2, 4, 0);
-    linearise_step(kepler, motion.point().step, {}, step);
-    ASSERT_TRUE(step.factor());
-    held = step.forward(held);
-  }
+  const Eigen::MatrixXd held = end_of_sizes_held_fixed(motion, from.system, steps);
   const auto differences = difference<TimeMode::adaptive>(from, 0);
   ASSERT_TRUE(differences);
   EXPECT_GT((held.col(0) - differences->tail(4)).norm(), 1e-2 * differences->norm());

@@ -2,6 +2,7 @@
 // backward, and the symplectic form.
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
+#include <lagroid/solvers/testing/sensitivity_laws.hpp>
 #include <lagroid/systems/multibody/effects.hpp>
 #include <lagroid/systems/multibody/joints.hpp>
 #include <lagroid/systems/multibody/sensitivity/linearised_scene.hpp>
@@ -218,33 +219,17 @@ template <class Written> Eigen::VectorXd end_of(const Written& write, const Eige
   return all_of_it(motion);
 }
 
-/// Central differences of four widths, extrapolated.
-Eigen::VectorXd difference(const std::function<Eigen::VectorXd(double)>& f, double width) {
-  std::vector<Eigen::VectorXd> row;
-  for (int level = 0; level < 4; ++level, width /= 2) {
-    Eigen::VectorXd next = (f(width) - f(-width)) / (2 * width);
-    double power = 4;
-    for (Eigen::VectorXd& each : row) {
-      const Eigen::VectorXd better = next + (next - each) / (power - 1);
-      each = std::exchange(next, better);
-      power *= 4;
-    }
-    row.push_back(next);
-  }
-  return row.back();
-}
-
 /// How far directions are from what the differences of a run tend to, over their size.
 template <class Written>
 double off_differences(const Written& write, const Eigen::MatrixXd& derivatives, int states, int k) {
-  const Eigen::VectorXd by = difference(
+  const Eigen::VectorXd by = laws::detail::extrapolated_difference(
       [&](double width) {
         if (k < states) return end_of(write, Eigen::VectorXd(Eigen::VectorXd::Unit(states, k) * width));
         Written other = write;
         other.numbers[std::size_t(k - states)] += width;
         return end_of(other, {});
       },
-      k < states ? 4e-4 : 1e-2 * write.numbers[std::size_t(k - states)]);
+      k < states ? 4e-4 : 1e-2 * write.numbers[std::size_t(k - states)], /*widths=*/4);
   return (by - derivatives.col(k)).norm() / std::max(derivatives.col(k).norm(), 1.0);
 }
 
@@ -344,13 +329,13 @@ TEST(SceneGradientsComposed, AreWhatDifferencesTendTo) {
   const Propagated end = propagate_backward(motion, steps);
   ASSERT_TRUE(end.converged()) << end.message;
   for (std::size_t k = 0; k < write.numbers.size(); ++k) {
-    const Eigen::VectorXd by = difference(
+    const Eigen::VectorXd by = laws::detail::extrapolated_difference(
         [&](double width) {
           Machine other = write;
           other.numbers[k] += width;
           return run(other);
         },
-        1e-2 * write.numbers[k]);
+        1e-2 * write.numbers[k], /*widths=*/4);
     const Eigen::VectorXd exact = end.derivatives.col(motion.states() + Eigen::Index(k));
     EXPECT_LT((by - exact).norm(), 1e-8 * std::max(exact.norm(), 1.0)) << "number " << k;
   }
