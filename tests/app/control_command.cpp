@@ -177,8 +177,6 @@ TEST_F(Control, AGateIsPassedWhereTheWayIsShortest) {
   EXPECT_NEAR(rows[60][1], 2, 1e-10);
   EXPECT_NEAR(rows[60][3], 0, 1e-10);
   EXPECT_NEAR(std::hypot(rows[120][1] - 6, rows[120][2] - 3), 1, 1e-10);
-  const Outcome check = run("check " + example("control/through_a_gate"));
-  EXPECT_EQ(check.code, 0) << check.out << check.err;
   const Outcome by_ipopt = run(scene("through_a_gate") + " --json --set solver.method=ipopt");
   if (by_ipopt.code == 2) GTEST_SKIP() << "a build without IPOPT";
   ASSERT_EQ(by_ipopt.code, 0) << by_ipopt.err;

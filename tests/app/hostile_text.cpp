@@ -1,6 +1,7 @@
 // Names, keys and files by someone who means harm: none is obeyed by gnuplot, a browser or a terminal, and none ends
 // the program without a line.
 
+#define LAGROID_HAS_CHECK  // it looks whether there is one
 #include "command_line.hpp"
 
 #include <fmt/format.h>
