@@ -39,6 +39,8 @@ class FollowedRun {
   bool goes_on() const;
   /// The ledger up to the last node.
   Ledger ledger() const;
+  /// What has happened up to it.
+  const EventTable& happened() const { return events_ ? events_->table() : result_.events; }
   /// Says in the result how the run ended, in the words for what stopped it.
   void tell_end();
   /// Completes the result: the last row, the ledger, what happened, pictures.

@@ -149,7 +149,11 @@ Json LiveRun::description() {
   Json methods = Json::array();
   for (const Method& method : scene_.methods)
     methods.push_back({{"name", method.name}, {"order", method.order}, {"to_compare", method.to_compare}});
-  Json out{{"columns", columns}, {"methods", methods}, {"turned", turned_}, {"whole", whole_}};
+  Json sections = Json::array();
+  for (std::size_t i = 0; i < happened().watched.size(); ++i)
+    if (const WatchedEvent& event = happened().watched[i]; !event.plot.empty())
+      sections.push_back({{"event", i}, {"name", event.name}, {"x", event.plot[0]}, {"y", event.plot[1]}});
+  Json out{{"columns", columns}, {"methods", methods}, {"turned", turned_}, {"whole", whole_}, {"sections", sections}};
   if (scene_.motion) out.update(Json{{"step", scene_.motion->step_size()}, {"steps", scene_.extent.steps}});
   return out;
 }
@@ -166,6 +170,20 @@ std::string LiveRun::summary() const {
 std::span<const double> LiveRun::values(std::size_t series) {
   const Trajectory& rows = trajectory();
   return series < rows.series.size() ? rows.series[series].values : rows.time;
+}
+
+std::span<const double> LiveRun::section(std::size_t event) {
+  const EventTable& events = happened();
+  section_.clear();
+  if (event >= events.watched.size()) return section_;
+  std::vector<std::size_t> places;
+  for (const std::string& column : events.watched[event].plot)
+    places.push_back(
+        std::size_t(std::find(events.columns.begin(), events.columns.end(), column) - events.columns.begin()));
+  for (const Happening& row : events.rows)
+    if (row.event == event && row.passing != Passing::touching)
+      for (const std::size_t place : places) section_.push_back(row.values[place]);
+  return section_;
 }
 
 }  // namespace lagroid::web

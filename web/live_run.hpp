@@ -36,15 +36,20 @@ class LiveRun {
   std::string summary() const;
   /// The rows of a series of the trajectory; of time where there is none such.
   std::span<const double> values(std::size_t series);
+  /// Where that event of the scene has happened, in the two columns of its picture, one point after another; until the
+  /// next call. Touches are none.
+  std::span<const double> section(std::size_t event);
 
  private:
   const Trajectory& trajectory() { return followed_ ? followed_->trajectory() : result_.trajectory; }
+  const EventTable& happened() const { return followed_ ? followed_->happened() : result_.events; }
 
   app::MotionScene scene_;
   RunResult result_;
   std::optional<FollowedRun> followed_;  ///< until it has ended
   nlohmann::ordered_json turned_;
   std::string whole_;
+  std::vector<double> section_;
 };
 
 }  // namespace lagroid::web

@@ -201,6 +201,59 @@ class Page(unittest.TestCase):
         self.assertTrue(eventually(lambda: "adaptive" not in offers()), offers())
         self.assertTrue(editor.get_attribute("value").endswith('mode = "pre'))
 
+    def test_phase_plots_and_sections(self):
+        scene = (EXAMPLES / "pendulum.toml").read_text()
+        self.one_file(scene=scene)
+        self.assertTrue(eventually(lambda: self.find("views").is_displayed()))
+        field = lambda name: self.find("views").find_element("name", name)
+        ask = lambda kind: self.find("views").find_element("css selector", f"button[value={kind}]").click()
+        captions = lambda: DRIVER.execute_script(
+            "return [...document.querySelectorAll('#added figcaption')].map((each) => each.textContent)")
+        Select(field("x")).select_by_value("q")
+        Select(field("y")).select_by_value("p")
+        ask("phase")
+        self.assertTrue(eventually(lambda: captions() == ["p over q"] and self.ended()), captions())
+        Select(field("direction")).select_by_value("falling")
+        field("value").clear()
+        field("value").send_keys("0.25")
+        ask("section")
+        name = "p over q where q falls through 0.25"
+        self.assertTrue(eventually(lambda: captions() == ["p over q", name] and self.ended()), self.find("refusal").text)
+        points = lambda: DRIVER.execute_script("const {columns} = lagroid.places.get(0).sections[0];"
+                                               "return [Array.from(columns.q), Array.from(columns.p)];")
+        event = f'\n[[event]]\nname = "bottom"\nwhen = "q - 0.25"\ndirection = "falling"\n'
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "scene.toml").write_text(scene + event)
+            subprocess.run([LAGROID, "run", f"{folder}/scene.toml", "--out", f"{folder}/run"], check=True, capture_output=True)
+            events = json.loads((pathlib.Path(folder) / "run/summary.json").read_text())["events"]
+        expected = [row["values"] for row in events["rows"]]
+        self.assertGreater(len(expected), 3)
+        q, p = (events["columns"].index(column) for column in "qp")
+        for found, place in zip(points(), (q, p)):
+            self.assertEqual(len(found), len(expected))
+            for one, other in zip(found, expected):
+                self.assertAlmostEqual(one, other[place], places=10)
+        # The pixels of a curve and of points are there.
+        for canvas in DRIVER.find_elements("css selector", "#added canvas"):
+            self.assertGreater(DRIVER.execute_script("""const [canvas] = arguments;
+                const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+                let blue = 0;
+                for (let i = 0; i < data.length; i += 4) blue += data[i + 3] > 200 && data[i + 2] > data[i] + 80;
+                return blue;""", canvas), 3)
+        # Of more rows than are drawn, those before the last are left out, and it says so.
+        last = lambda: DRIVER.execute_script("return Array.from(lagroid.places.get(0).last.q)")
+        self.assertEqual(len(last()), self.steps() + 1)
+        # A second method has its own points; the link has it all.
+        method = Select(self.find("second")).options[-1].get_attribute("value")
+        Select(self.find("second")).select_by_value(method)
+        self.assertTrue(eventually(lambda: DRIVER.execute_script("return lagroid.places.get(1)?.sections.length") == 1))
+        self.open(DRIVER.current_url)
+        self.assertTrue(eventually(lambda: captions() == ["p over q", name]), self.find("refusal").text)
+        DRIVER.find_element("css selector", f"#added button[aria-label='Remove {name}']").click()
+        self.assertTrue(eventually(lambda: captions() == ["p over q"]), captions())
+        Select(self.find("scenes")).select_by_value("kepler")
+        self.assertTrue(eventually(lambda: captions() == []), captions())
+
     def test_files_to_take_along(self):
         self.one_file(scene=(EXAMPLES / "tumbling_book.toml").read_text(), settings=[["time.steps", "50"]])
         DRIVER.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "deny"})
@@ -243,6 +296,13 @@ class Page(unittest.TestCase):
         self.one_file(scene='system = "<script>alert(1)</script>"\n')
         self.assertTrue(eventually(lambda: self.find("refusal").is_displayed()))
         self.assertEqual(DRIVER.find_elements("css selector", "body img, #refusal script"), [])
+        view = {"x": "<img src=x onerror=alert(1)>", "y": "p", "through": {"column": '"\n[x]', "value": "1", "direction": "up"}}
+        self.one_file(scene=(EXAMPLES / "pendulum.toml").read_text(), views=[view, {"x": view["x"], "y": "p"}])
+        self.assertTrue(eventually(lambda: "a section: event.0" in self.find("refusal").text), self.find("refusal").text)
+        self.assertTrue(eventually(lambda: self.steps() == 0))  # without it
+        self.one_file(scene=(EXAMPLES / "pendulum.toml").read_text(), views=[{"x": view["x"], "y": "p"}])
+        self.assertTrue(eventually(lambda: "<img" in self.find("added").text))
+        self.assertEqual(DRIVER.find_elements("css selector", "body img"), [])
 
     def test_what_takes_too_long_is_given_up(self):
         self.one_file(scene=(EXAMPLES / "kepler_boundary.toml").read_text(),

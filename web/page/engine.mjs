@@ -37,9 +37,16 @@ export class Engine {
   }
   /** Numbers of a series, of time where it is negative: a view of the memory, to be copied before the next step. */
   values(run, series) {
+    return this.numbers("lagroid_values", "lagroid_count", run, series);
+  }
+  /** Points x, y of a section one after another; a view in the same way. */
+  section(run, event) {
+    return this.numbers("lagroid_section", "lagroid_section_count", run, event);
+  }
+  numbers(place, counted, run, which) {
     const types = ["number", "number"];
-    const count = this.module.ccall("lagroid_count", "number", types, [run, series]);
-    const at = this.module.ccall("lagroid_values", "number", types, [run, series]) / 8;
+    const count = this.module.ccall(counted, "number", types, [run, which]);
+    const at = this.module.ccall(place, "number", types, [run, which]) / 8;
     return this.module.HEAPF64.subarray(at, at + count);
   }
   close(run) {
@@ -47,21 +54,45 @@ export class Engine {
   }
 }
 
-/** Columns by label, of at most so many rows, evenly spaced, and the last. On arrows there is none at the first node. */
+/** Columns by label, of at most so many rows, evenly spaced, and the last. */
 export function columnsOf(engine, run, series, most) {
-  const time = engine.values(run, -1);
-  const stride = Math.max(1, Math.ceil(time.length / most));
+  const count = engine.values(run, -1).length;
+  const stride = Math.max(1, Math.ceil(count / most));
   const rows = [];
-  for (let row = 0; row < time.length; row += stride) rows.push(row);
-  if (rows.length && rows[rows.length - 1] !== time.length - 1) rows.push(time.length - 1);
+  for (let row = 0; row < count; row += stride) rows.push(row);
+  if (rows.length && rows[rows.length - 1] !== count - 1) rows.push(count - 1);
+  return columnsAt(engine, run, series, rows);
+}
+
+/** All of the last rows, so many, of the columns with these labels and of time. */
+export function lastOf(engine, run, series, most, wanted) {
+  const count = engine.values(run, -1).length;
+  const first = Math.max(0, count - most);
+  const rows = Array.from({ length: count - first }, (_, i) => first + i);
+  return columnsAt(engine, run, series, rows, wanted);
+}
+
+/** On arrows there is nothing at the first node. */
+function columnsAt(engine, run, series, rows, wanted) {
+  const time = engine.values(run, -1);
   const columns = { t: Float64Array.from(rows, (row) => time[row]) };
   series.forEach(({ labels, on_arrows }, i) => {
     const values = engine.values(run, i);
     const first = on_arrows ? 1 : 0;
     labels.forEach((label, component) => {
+      if (wanted && !wanted.includes(label)) return;
       columns[label] = Float64Array.from(rows, (row) =>
         row < first ? NaN : values[(row - first) * labels.length + component]);
     });
   });
   return columns;
+}
+
+/** The points of all sections of a run: {name, x, y}, labels, and the columns by these. */
+export function sectionsOf(engine, run, sections) {
+  return sections.map(({ event, name, x, y }) => {
+    const points = engine.section(run, event);
+    const of = (which) => Float64Array.from({ length: points.length / 2 }, (_, i) => points[2 * i + which]);
+    return { name, x, y, columns: { [x]: of(0), [y]: of(1) } };
+  });
 }

@@ -2,10 +2,11 @@
 import { Completion } from "./completion.js";
 import { csv, pasted, recorded, save } from "./files.js";
 import { read, written } from "./link.js";
-import { showPaths } from "./paths.js";
-import { Picture } from "./picture.js";
-import { Plot } from "./plot.js";
-import { Study } from "./study.js";
+import { showPaths } from "./pictures/paths.js";
+import { Picture } from "./pictures/picture.js";
+import { Plot } from "./pictures/plot.js";
+import { Study } from "./pictures/study.js";
+import { Views, asEvents, drawnBy } from "./pictures/views.js";
 import { controls, literal } from "./turned.js";
 
 const element = (id) => document.getElementById(id);
@@ -13,8 +14,9 @@ const gallery = JSON.parse(element("gallery").textContent);
 const own = ""; // the method that the scene itself names
 const toWrite = "your own Lagrangian"; // of the gallery, to be changed by the reader
 
-const state = { scene: "", settings: new Map(), first: own, second: null, fair: false }; // fair: at the same cost
-const places = new Map(); // 0 and 1: {columns, summary, goes_on}
+const state = { scene: "", settings: new Map(), first: own, second: null, fair: false, views: [] };
+// fair: at the same cost; views: pictures that the reader has added (pictures/views.js)
+const places = new Map(); // 0 and 1: {columns, last, sections, summary, goes_on}
 let worker;
 let plots = [];
 let panelsShown = "";
@@ -30,16 +32,21 @@ let askedAt = 0;
 const patience = 3000; // ms; whatever is asked for after that begins with another worker
 
 const ask = (message) => worker.postMessage(message);
-const asked = (method) => ({ scene: state.scene, settings: [...state.settings].map(([k, v]) => `${k}=${v}`), method });
+const sceneText = () => state.scene + asEvents(state.views);
+const asked = (method) => ({ scene: sceneText(), settings: [...state.settings].map(([k, v]) => `${k}=${v}`), method });
 
+/** Tells it, and returns whether it is about what the page has added to the scene. */
 function refuse(message) {
   const place = /^scene:(\d+): /.exec(message);
-  element("refusal").textContent = place ? `line ${place[1]}: ${message.slice(place[0].length)}` : message;
-  element("refusal").hidden = message === "";
-  if (!place) return;
   const lines = state.scene.split("\n");
+  const isAdded = place !== null && place[1] > lines.length;
+  const where = isAdded ? "a section" : `line ${place?.[1]}`;
+  element("refusal").textContent = place ? `${where}: ${message.slice(place[0].length)}` : message;
+  element("refusal").hidden = message === "";
+  if (!place || isAdded) return isAdded;
   const from = lines.slice(0, place[1] - 1).join("\n").length + (place[1] > 1 ? 1 : 0);
   element("editor").setSelectionRange(from, from + lines[place[1] - 1].length);
+  return false;
 }
 
 /** From the start, as the page says now. */
@@ -47,7 +54,8 @@ function prepare() {
   refuse("");
   study.forget();
   history.replaceState(null, "", written({
-    scene: state.scene, settings: [...state.settings], first: state.first, second: state.second, fair: state.fair }));
+    scene: state.scene, settings: [...state.settings], first: state.first, second: state.second, fair: state.fair,
+    views: state.views }));
   if (unanswered > 0 && performance.now() - askedAt > patience) begin();
   ++number;
   go(false);
@@ -55,7 +63,7 @@ function prepare() {
   ask({ kind: "close", place: 1 });
   [state.first, state.second].forEach((method, place) => {
     if (method === null) return;
-    ask({ kind: "open", place, number, ...asked(method), fair: place === 1 && state.fair });
+    ask({ kind: "open", place, number, ...asked(method), fair: place === 1 && state.fair, phases: drawnBy(state.views) });
     ++unanswered;
   });
   askedAt = performance.now();
@@ -101,7 +109,7 @@ function go(on) {
 function choose(scene) {
   state.scene = scene;
   state.settings.clear();
-  [state.first, state.second] = [own, null];
+  [state.first, state.second, state.views] = [own, null, []];
   element("editor").value = scene;
   element("turned").replaceChildren();
   prepare();
@@ -140,6 +148,7 @@ function showPlots() {
   }
   const columns = [...places].sort(([a], [b]) => a - b).map(([, held]) => held.columns);
   for (const plot of plots) plot.draw(columns, handlesOf(plot.panel));
+  views.draw(state.views, [...places].sort(([a], [b]) => a - b).map(([, held]) => held));
 }
 
 const frames = []; // ms that the page's own work took in the last ones
@@ -199,7 +208,8 @@ const hears = {
     const linked = read(location.hash);
     if (!linked) return choose(gallery[element("scenes").value]);
     Object.assign(state, linked, { settings: new Map(linked.settings) });
-    element("scenes").selectedIndex = Object.values(gallery).indexOf(state.scene);
+    const isScene = ([, scene]) => scene === state.scene;
+    element("scenes").value = Object.entries(gallery).find(isScene)?.[0] ?? ""; // or none of them
     element("editor").value = state.scene;
     prepare();
   },
@@ -212,6 +222,7 @@ const hears = {
     element("fair").checked = state.fair;
     ({ turned, whole } = opened);
     element("measure").disabled = opened.methods.length === 0;
+    views.offer(opened.columns.flatMap(({ labels, on_arrows }) => (on_arrows ? [] : labels)));
     offerMethods(opened.methods);
     if (element("turned").childElementCount === 0)
       controls(element("turned"), opened.turned, (path, text) => {
@@ -220,9 +231,9 @@ const hears = {
         go(true);
       });
   },
-  rows({ place, number: of, columns, summary, goes_on, rate: made }) {
+  rows({ place, number: of, rate: made, ...run }) {
     if (of !== number || (place === 1 && state.second === null)) return;
-    places.set(place, { columns, summary, goes_on });
+    places.set(place, run);
     rate = made;
     redraw();
   },
@@ -230,6 +241,9 @@ const hears = {
     if (of === "open") answered();
     if (of === "study") study.end();
     go(false);
+    if (!refuse(message)) return;
+    state.views = state.views.filter(({ through }) => !through); // nothing else would take them away
+    prepare();
     refuse(message);
   },
   exported({ columns }) {
@@ -243,6 +257,11 @@ const hears = {
 const tell = (text) => (element("status").textContent = text);
 const completion = new Completion(element("editor"), element("offers"), (system) => ask({ kind: "schema", system }));
 const study = new Study(element("study"), element("measure"), ask, tell);
+const views = new Views(element("views"), element("added"), (all) => {
+  state.views = all;
+  prepare();
+  go(true);
+});
 const picture = new Picture(element("stage"), element("animate"), took);
 
 function listen() {
@@ -264,7 +283,7 @@ function listen() {
     study.begin(state.scene, asked(own).settings);
   });
   element("export").addEventListener("click", () => ask({ kind: "export", place: 0 }));
-  element("save").addEventListener("click", () => save("scene.toml", "application/toml", state.settings.size ? whole : state.scene));
+  element("save").addEventListener("click", () => save("scene.toml", "application/toml", state.settings.size ? whole : sceneText()));
   element("png").addEventListener("click", async () => {
     const canvases = [...document.querySelectorAll("figure canvas, #stage canvas")];
     if (canvases.length) save("lagroid.png", "image/png", await pasted(canvases));

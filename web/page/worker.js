@@ -1,7 +1,8 @@
 // Computes away from the page: a run that would not end can be stopped, for the page ends the worker.
-import { Engine, columnsOf } from "./engine.mjs";
+import { Engine, columnsOf, lastOf, sectionsOf } from "./engine.mjs";
 
 const mostRows = 1500;
+const lastRows = 5000; // where every row counts: a curve of some of them is another one
 const share = 12; // ms of computing, then messages are looked at
 const pause = 80; // ms from one look at the rows to the next
 
@@ -13,10 +14,14 @@ let seconds = 0;
 let made = 0;
 
 function show(place) {
-  const { run, series, goes_on, number } = runs.get(place);
+  const { run, series, goes_on, number, opened, phases } = runs.get(place);
   const columns = columnsOf(engine, run, series, mostRows);
+  const sections = sectionsOf(engine, run, opened.sections);
+  const last = phases.length > 0 ? lastOf(engine, run, series, lastRows, phases) : { t: [] };
   const rate = seconds > 0 ? made / seconds : 0;
-  postMessage({ kind: "rows", place, number, columns, summary: engine.summary(run), goes_on, rate });
+  const summary = engine.summary(run);
+  delete summary.events; // as many rows as there are points
+  postMessage({ kind: "rows", place, number, columns, last, sections, summary, goes_on, rate });
 }
 
 function advance(place, steps) {
@@ -80,10 +85,11 @@ function work() {
 }
 
 /**
+ * `phases` are labels of columns of which all the last rows are told, too.
  * `fair`: beside a run that is there, with as many steps as take the same time. All that is told of the run has the
  * `number` with which it was asked for.
  */
-function open({ place, number, scene, settings, method, fair }) {
+function open({ place, number, scene, settings, method, fair, phases }) {
   ++studied;
   if (runs.has(place)) engine.close(runs.get(place).run);
   runs.delete(place);
@@ -92,7 +98,7 @@ function open({ place, number, scene, settings, method, fair }) {
   const { settings: more, pace } = first ? atTheCostOf(first, asked) : { settings: [], pace: 1 };
   const opened = engine.open({ ...asked, settings: [...settings, ...more] });
   runs.set(place, {
-    run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10, pace, asked, opened, number });
+    run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10, pace, asked, opened, phases, number });
   [seconds, made] = [0, 0];
   postMessage({ kind: "opened", place, opened, pace });
   show(place);

@@ -1,5 +1,5 @@
-// Curves on a canvas: one panel of a run, with those of a second run dashed over them; in a panel with logarithms, points
-// that were measured. What can be moved by hand is drawn over them as handles.
+// Curves on a canvas: one panel of a run, with those of a second run dashed over them, or points of both; in a panel with
+// logarithms, points that were measured. What can be moved by hand is drawn over them as handles.
 
 const palette = ["#2f6fde", "#e4572e", "#2a9d6f", "#8e5bd0", "#d9a514", "#3aa6b9"];
 
@@ -78,8 +78,8 @@ export class Plot {
     held?.released();
   }
 
-  /** `runs`: columns by label, of one run or two; `handles`: {x, y, moved(x, y), released()}. */
-  draw(runs, handles = []) {
+  /** `runs`: columns by label, of one run or two; `handles`: {x, y, moved(x, y), released()}; `points` alone, no curves. */
+  draw(runs, handles = [], points = false) {
     const { panel, canvas } = this;
     // The one in hand stays the same object while others come.
     this.handles = handles.map((handle) => (this.held?.name === handle.name ? Object.assign(this.held, handle) : handle));
@@ -146,6 +146,14 @@ export class Plot {
     paint.clip();
     paint.lineWidth = 1.5;
     for (const { which, colour, x, y } of curves) {
+      if (points) {
+        paint.fillStyle = colour;
+        for (let row = 0; row < x.length; ++row) {
+          const [px, py] = at(x_drawn(x[row]), y_drawn(y[row]));
+          if (Number.isFinite(px) && Number.isFinite(py)) paint.fillRect(px - 1, py - 1, 2, 2);
+        }
+        continue;
+      }
       paint.strokeStyle = colour;
       paint.setLineDash(which === 0 ? [] : [6, 4]);
       paint.beginPath();

@@ -1,6 +1,6 @@
 // The bodies of a run in space, by the stage of the page that shows finished runs, as far as the run has come.
-import { Stage } from "../../app/viewer/bodies.js";
-import { rowAt } from "../../app/viewer/frames.js";
+import { Stage } from "../../../app/viewer/bodies.js";
+import { rowAt } from "../../../app/viewer/frames.js";
 
 export class Picture {
   /** `took` hears how many ms each frame has cost. */
