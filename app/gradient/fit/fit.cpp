@@ -161,9 +161,9 @@ Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& fi
   const GradientColumns columns = columns_of(subject, options.unknowns);
   std::vector<MeasuredRun> measured = read_measured(subject, files, options, fit);
   const std::vector<Guessed> unknowns = unknowns_of(subject, columns, files.size(), options, fit);
-  for (const auto& [name, bounds] : options.bounds)
-    if (std::none_of(unknowns.begin(), unknowns.end(), [&](const Guessed& each) { return each.name == name; }))
-      throw GradientRefused(fmt::format("{}: it has bounds, but is not to be fitted", name));
+  for (const auto& bound : options.bounds)
+    if (std::none_of(unknowns.begin(), unknowns.end(), [&](const Guessed& each) { return each.name == bound.first; }))
+      throw GradientRefused(fmt::format("{}: it has bounds, but is not to be fitted", bound.first));
 
   PredictedRuns runs(subject, columns, std::move(measured));
   runs.PrepareForEvaluation(true, true);  // what has no derivative is refused here, and not amid a solve

@@ -15,9 +15,11 @@ export class Picture {
 
   /** A run that can be shown, {columns, summary}; null while it is computed. */
   offer(held) {
+    const isMoving = this.stage !== null;
     this.end();
     this.run = held && held.summary.picture.shapes.length && held.columns.t.length > 1 ? held : null;
     this.section.hidden = !this.run;
+    if (isMoving && this.run) this.begin(); // rows that came after somebody had asked for it
   }
 
   /** Throws where there is nothing to be moved. */
