@@ -68,7 +68,7 @@ template <class Rule> class PrimaryConstraintStep {
 
   /// A step h of either sign from q; the momentum of `point` is not asked for.
   SolveStatus step(Point& point, double h) const {
-    const auto theta = [this]<class S>(const Vector<S, n>& q) { return momentum(q); };
+    const auto theta = [this]<class S>(const Vector<S, n>& q) { return this->momentum(q); };
     // (theta' - theta'^T) v = dl/dq at rest: the velocity.
     const Matrix<double, n, n> slope = jacobian_of<n>(theta, point.object);
     const Vector<double, n> force = gradient_of(
