@@ -1,5 +1,6 @@
 #include "live_run.hpp"
 
+#include <lagroid/run/events/event_function.hpp>
 #include <lagroid/run/reports/report.hpp>
 
 #include <families/family.hpp>
@@ -105,6 +106,20 @@ Json turned_by(const Section& scene) {
   return out;
 }
 
+/// The first and the last row of each event: all that is told of the others is their number.
+std::vector<Happening> ends_of(const EventTable& events) {
+  std::vector<Happening> out;
+  std::vector<const Happening*> last(events.watched.size());
+  for (const Happening& row : events.rows) {
+    if (row.passing == Passing::touching) continue;
+    if (last[row.event] == nullptr) out.push_back(row);
+    last[row.event] = &row;
+  }
+  for (const Happening* row : last)
+    if (row != nullptr) out.push_back(*row);
+  return out;
+}
+
 Section by_method(const Section& scene, const std::string& name) {
   const Section plain = app::without_method(scene);
   const auto methods = app::family_of(scene).read(plain, {}).methods;
@@ -155,12 +170,14 @@ Json LiveRun::description() {
       sections.push_back({{"event", i}, {"name", event.name}, {"x", event.plot[0]}, {"y", event.plot[1]}});
   Json out{{"columns", columns}, {"methods", methods}, {"turned", turned_}, {"whole", whole_}, {"sections", sections}};
   if (scene_.motion) out.update(Json{{"step", scene_.motion->step_size()}, {"steps", scene_.extent.steps}});
+  if (scene_.motion && scene_.motion->why_not_cut().empty()) out["within"] = columns_within(scene_.motion->look());
   return out;
 }
 
 std::string LiveRun::summary() const {
-  if (!followed_) return json_report(result_);
   RunResult now = result_;
+  now.events.rows = ends_of(result_.events);
+  if (!followed_) return json_report(now);
   now.ledger = followed_->ledger();
   now.final = scene_.motion->look().endpoint();
   scene_.motion->describe(now);
@@ -176,13 +193,15 @@ std::span<const double> LiveRun::section(std::size_t event) {
   const EventTable& events = happened();
   section_.clear();
   if (event >= events.watched.size()) return section_;
-  std::vector<std::size_t> places;
-  for (const std::string& column : events.watched[event].plot)
-    places.push_back(
-        std::size_t(std::find(events.columns.begin(), events.columns.end(), column) - events.columns.begin()));
-  for (const Happening& row : events.rows)
-    if (row.event == event && row.passing != Passing::touching)
-      for (const std::size_t place : places) section_.push_back(row.values[place]);
+  const auto value = [&](const Happening& row, const std::string& column) {
+    const auto place = std::find(events.columns.begin(), events.columns.end(), column);
+    return place == events.columns.end() ? row.time : row.values[std::size_t(place - events.columns.begin())];
+  };
+  const std::vector<std::string>& plot = events.watched[event].plot;
+  for (auto row = events.rows.rbegin(); row != events.rows.rend() && section_.size() < 2 * most_points; ++row)
+    if (row->event == event && row->passing != Passing::touching)
+      section_.insert(section_.end(), {value(*row, plot[1]), value(*row, plot[0])});
+  std::reverse(section_.begin(), section_.end());
   return section_;
 }
 

@@ -23,6 +23,8 @@ namespace lagroid::web {
 
 class LiveRun {
  public:
+  static constexpr std::size_t most_points = 5000;
+
   /// Of a scene with overrides "path=value"; `method` is one of those that it could be integrated by (study/), or empty
   /// for the scene's own.
   LiveRun(const std::string& text, const std::vector<std::string>& overrides, const std::string& method);
@@ -30,14 +32,15 @@ class LiveRun {
   void advance(long steps);
   bool goes_on() const { return followed_ && followed_->goes_on(); }
 
-  /// What does not change: columns, methods, the numbers that a reader may turn, and the scene with all changes.
+  /// What does not change: columns, methods, the numbers that a reader may turn, the scene with all changes, its
+  /// sections, and what sections can be asked of, `within` steps.
   nlohmann::ordered_json description();
-  /// What `lagroid run` writes as summary.json, of the run up to now.
+  /// What `lagroid run` writes as summary.json, of the run up to now, without the rows of events.
   std::string summary() const;
   /// The rows of a series of the trajectory; of time where there is none such.
   std::span<const double> values(std::size_t series);
-  /// Where that event of the scene has happened, in the two columns of its picture, one point after another; until the
-  /// next call. Touches are none.
+  /// Where that event of the scene has happened, in the two columns of its picture, one point after another, the last
+  /// `most_points`; until the next call. Touches are none.
   std::span<const double> section(std::size_t event);
 
  private:

@@ -206,13 +206,16 @@ class Page(unittest.TestCase):
         self.one_file(scene=scene)
         self.assertTrue(eventually(lambda: self.find("views").is_displayed()))
         field = lambda name: self.find("views").find_element("name", name)
-        ask = lambda kind: self.find("views").find_element("css selector", f"button[value={kind}]").click()
+        ask = lambda kind: field("phase").click() if kind == "phase" else field("value").send_keys(Keys.ENTER)
         captions = lambda: DRIVER.execute_script(
             "return [...document.querySelectorAll('#added figcaption')].map((each) => each.textContent)")
         Select(field("x")).select_by_value("q")
         Select(field("y")).select_by_value("p")
         ask("phase")
-        self.assertTrue(eventually(lambda: captions() == ["p over q"] and self.ended()), captions())
+        self.assertTrue(eventually(lambda: captions() == ["p over q"]), captions())
+        self.assertEqual(self.steps(), 0)
+        self.find("run").click()
+        self.assertTrue(eventually(self.ended))
         Select(field("direction")).select_by_value("falling")
         field("value").clear()
         field("value").send_keys("0.25")
@@ -240,7 +243,7 @@ class Page(unittest.TestCase):
                 let blue = 0;
                 for (let i = 0; i < data.length; i += 4) blue += data[i + 3] > 200 && data[i + 2] > data[i] + 80;
                 return blue;""", canvas), 3)
-        # Of more rows than are drawn, those before the last are left out, and it says so.
+        # A phase plot has every row, and is drawn without a run from the start.
         last = lambda: DRIVER.execute_script("return Array.from(lagroid.places.get(0).last.q)")
         self.assertEqual(len(last()), self.steps() + 1)
         # A second method has its own points; the link has it all.
@@ -253,6 +256,38 @@ class Page(unittest.TestCase):
         self.assertTrue(eventually(lambda: captions() == ["p over q"]), captions())
         Select(self.find("scenes")).select_by_value("kepler")
         self.assertTrue(eventually(lambda: captions() == []), captions())
+
+    def test_sections_that_cannot_be(self):
+        pendulum = (EXAMPLES / "pendulum.toml").read_text()
+        section = lambda column, value, x="q": {"x": x, "y": "p", "through": {
+            "column": column, "value": value, "direction": "rising"}}
+        views = lambda: DRIVER.execute_script("return lagroid.state.views")
+        figures = lambda: DRIVER.execute_script("return document.querySelectorAll('#plots figure').length")
+        # What the run refuses is told, and only that is taken away.
+        for column in ("drift energy", "nothing", "1 )"):
+            with self.subTest(column):
+                self.one_file(scene=pendulum, views=[section("q", "0.25"), section(column, "1")])
+                self.assertTrue(eventually(lambda: self.steps() == 0 and len(views()) == 1), self.find("refusal").text)
+                self.assertTrue(self.find("refusal").is_displayed())
+                self.assertTrue(eventually(lambda: figures() > 0))
+        # Times are those of the points; a column that is the same in all points is a line, and no page without an end.
+        self.one_file(scene=pendulum, views=[section("q", "0.25", "t"), section("p", "0.25")])
+        self.assertTrue(eventually(lambda: self.steps() == 0))
+        self.find("run").click()
+        self.assertTrue(eventually(self.ended))
+        times, constant = DRIVER.execute_script(
+            "return lagroid.places.get(0).sections.map(({columns}) => Array.from(columns.t ?? columns.p)).map((all) => all.sort((a, b) => a - b))")
+        self.assertTrue(all(0 < before < after < 100 for before, after in zip(times, times[1:])), times)
+        self.assertLess(constant[-1] - constant[0], 1e-9)
+        self.assertTrue(eventually(lambda: "converged" in self.find("status").text), self.find("status").text)
+        # Between ends that are given nothing is watched for.
+        self.one_file(scene=(EXAMPLES / "plate_ball.toml").read_text())
+        self.assertTrue(eventually(lambda: self.find("views").is_displayed()))
+        self.assertFalse(self.find("through").is_displayed())
+        # A link without its end says so.
+        DRIVER.get("about:blank")
+        self.open((FOLDER / "lagroid.html").as_uri() + fragment(scene=pendulum)[:-40])
+        self.assertTrue(eventually(lambda: "link" in self.find("refusal").text))
 
     def test_files_to_take_along(self):
         self.one_file(scene=(EXAMPLES / "tumbling_book.toml").read_text(), settings=[["time.steps", "50"]])

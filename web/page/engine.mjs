@@ -88,7 +88,7 @@ function columnsAt(engine, run, series, rows, wanted) {
   return columns;
 }
 
-/** The points of all sections of a run: {name, x, y}, labels, and the columns by these. */
+/** The last points of all sections of a run: {name, x, y}, labels, and the columns by these. */
 export function sectionsOf(engine, run, sections) {
   return sections.map(({ event, name, x, y }) => {
     const points = engine.section(run, event);

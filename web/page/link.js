@@ -1,11 +1,12 @@
 // The whole state of a page in the fragment of its address: a link is a bug report, or homework.
 
 const longest = 60000;
-const mostViews = 20;
+export const mostViews = 20;
 const isText = (value) => typeof value === "string" && value.length <= longest;
 
 const isView = ({ x, y, through }) => [x, y].every(isText) &&
-  (through === undefined || ["column", "value", "direction"].every((name) => isText(through?.[name])));
+  (through === undefined || ["column", "value", "direction"].every((name) => isText(through?.[name])) &&
+    Number.isFinite(Number(through.value)));
 
 /** {scene, settings, first, second, fair, views} as letters that an address may hold. */
 export function written(state) {

@@ -6,7 +6,7 @@ import { showPaths } from "./pictures/paths.js";
 import { Picture } from "./pictures/picture.js";
 import { Plot } from "./pictures/plot.js";
 import { Study } from "./pictures/study.js";
-import { Views, asEvents, drawnBy } from "./pictures/views.js";
+import { Views, asEvents, drawnBy, withoutRefused } from "./pictures/views.js";
 import { controls, literal } from "./turned.js";
 
 const element = (id) => document.getElementById(id);
@@ -49,13 +49,16 @@ function refuse(message) {
   return false;
 }
 
+/** In the address. */
+function remember() {
+  history.replaceState(null, "", written({ ...state, settings: [...state.settings] }));
+}
+
 /** From the start, as the page says now. */
 function prepare() {
   refuse("");
   study.forget();
-  history.replaceState(null, "", written({
-    scene: state.scene, settings: [...state.settings], first: state.first, second: state.second, fair: state.fair,
-    views: state.views }));
+  remember();
   if (unanswered > 0 && performance.now() - askedAt > patience) begin();
   ++number;
   go(false);
@@ -115,6 +118,16 @@ function choose(scene) {
   prepare();
 }
 
+/** A change of the text; of the same system methods and pictures stay. */
+function edit(scene) {
+  const system = (text) => /^system *=.*$/m.exec(text)?.[0];
+  if (system(scene) !== system(state.scene)) return choose(scene);
+  state.scene = scene;
+  state.settings.clear();
+  element("turned").replaceChildren();
+  prepare();
+}
+
 function offerMethods(methods) {
   for (const [id, chosen, none] of [["first", state.first, "of the scene"], ["second", state.second, "nothing"]]) {
     const select = element(id);
@@ -148,7 +161,7 @@ function showPlots() {
   }
   const columns = [...places].sort(([a], [b]) => a - b).map(([, held]) => held.columns);
   for (const plot of plots) plot.draw(columns, handlesOf(plot.panel));
-  views.draw(state.views, [...places].sort(([a], [b]) => a - b).map(([, held]) => held));
+  views.draw([...places].sort(([a], [b]) => a - b).map(([, held]) => held));
 }
 
 const frames = []; // ms that the page's own work took in the last ones
@@ -206,15 +219,20 @@ const hears = {
     for (const id of ["run", "step", "again", "measure", "link", "export", "png", "webm", "save"])
       element(id).disabled = false;
     const linked = read(location.hash);
-    if (!linked) return choose(gallery[element("scenes").value]);
+    if (!linked) {
+      choose(gallery[element("scenes").value]);
+      if (location.hash.length > 1) refuse("the link is no scene, or lacks its end; this is a scene of the gallery");
+      return;
+    }
     Object.assign(state, linked, { settings: new Map(linked.settings) });
     const isScene = ([, scene]) => scene === state.scene;
     element("scenes").value = Object.entries(gallery).find(isScene)?.[0] ?? ""; // or none of them
     element("editor").value = state.scene;
     prepare();
   },
-  opened({ place, opened, pace }) {
+  opened({ place, number: of, opened, pace }) {
     answered();
+    if (of !== number) return;
     if (place === 1 && state.fair)
       element("pace").textContent = `at the same cost: ${Number(pace.toPrecision(2))} steps for one`;
     if (place !== 0) return;
@@ -222,7 +240,7 @@ const hears = {
     element("fair").checked = state.fair;
     ({ turned, whole } = opened);
     element("measure").disabled = opened.methods.length === 0;
-    views.offer(opened.columns.flatMap(({ labels, on_arrows }) => (on_arrows ? [] : labels)));
+    views.offer(opened.columns.flatMap(({ labels, on_arrows }) => (on_arrows ? [] : labels)), opened.within);
     offerMethods(opened.methods);
     if (element("turned").childElementCount === 0)
       controls(element("turned"), opened.turned, (path, text) => {
@@ -237,12 +255,18 @@ const hears = {
     rate = made;
     redraw();
   },
-  refused({ message, of }) {
+  refused({ message, of, number: asked }) {
     if (of === "open") answered();
     if (of === "study") study.end();
+    if (asked !== undefined && asked !== number) return;
     go(false);
-    if (!refuse(message)) return;
-    state.views = state.views.filter(({ through }) => !through); // nothing else would take them away
+    const isOfSection = refuse(message) || message.startsWith("event ");
+    if (of !== "open") return;
+    whole = "";
+    if (!isOfSection || !state.views.some(({ through }) => through)) return;
+    // A section that is refused has no picture by which it could be removed.
+    const own = [...state.scene.matchAll(/^\s*\[\[event\]\]/gm)].length;
+    state.views = withoutRefused(state.views, message, own);
     prepare();
     refuse(message);
   },
@@ -257,8 +281,13 @@ const hears = {
 const tell = (text) => (element("status").textContent = text);
 const completion = new Completion(element("editor"), element("offers"), (system) => ask({ kind: "schema", system }));
 const study = new Study(element("study"), element("measure"), ask, tell);
-const views = new Views(element("views"), element("added"), (all) => {
+const views = new Views(element("views"), element("added"), state, (all) => {
+  const before = sceneText();
   state.views = all;
+  if (sceneText() === before) {
+    remember();
+    return ask({ kind: "draw", phases: drawnBy(all) });
+  }
   prepare();
   go(true);
 });
@@ -283,7 +312,7 @@ function listen() {
     study.begin(state.scene, asked(own).settings);
   });
   element("export").addEventListener("click", () => ask({ kind: "export", place: 0 }));
-  element("save").addEventListener("click", () => save("scene.toml", "application/toml", state.settings.size ? whole : sceneText()));
+  element("save").addEventListener("click", () => save("scene.toml", "application/toml", (state.settings.size > 0 || state.first !== own) && whole ? whole : sceneText()));
   element("png").addEventListener("click", async () => {
     const canvases = [...document.querySelectorAll("figure canvas, #stage canvas")];
     if (canvases.length) save("lagroid.png", "image/png", await pasted(canvases));
@@ -305,7 +334,7 @@ function listen() {
     }
   });
   element("editor").addEventListener("change", ({ target }) => {
-    choose(target.value);
+    edit(target.value);
     element("scenes").selectedIndex = -1;
   });
   window.addEventListener("resize", redraw);

@@ -13,14 +13,16 @@ let shown = 0;
 let seconds = 0;
 let made = 0;
 
+let phases = []; // labels of columns of which all the last rows are told, too
+
 function show(place) {
-  const { run, series, goes_on, number, opened, phases } = runs.get(place);
+  const { run, series, goes_on, number, opened, isGivenUp } = runs.get(place);
   const columns = columnsOf(engine, run, series, mostRows);
   const sections = sectionsOf(engine, run, opened.sections);
   const last = phases.length > 0 ? lastOf(engine, run, series, lastRows, phases) : { t: [] };
   const rate = seconds > 0 ? made / seconds : 0;
   const summary = engine.summary(run);
-  delete summary.events; // as many rows as there are points
+  if (isGivenUp) summary.status = "given up";
   postMessage({ kind: "rows", place, number, columns, last, sections, summary, goes_on, rate });
 }
 
@@ -29,8 +31,8 @@ function advance(place, steps) {
   try {
     held.goes_on = engine.advance(held.run, steps);
   } catch (error) {
-    held.goes_on = false;
-    postMessage({ kind: "refused", of: "advance", message: String(error.message) });
+    Object.assign(held, { goes_on: false, isGivenUp: true });
+    postMessage({ kind: "refused", of: "advance", number: held.number, message: String(error.message) });
   }
 }
 
@@ -85,11 +87,11 @@ function work() {
 }
 
 /**
- * `phases` are labels of columns of which all the last rows are told, too.
  * `fair`: beside a run that is there, with as many steps as take the same time. All that is told of the run has the
  * `number` with which it was asked for.
  */
-function open({ place, number, scene, settings, method, fair, phases }) {
+function open({ place, number, scene, settings, method, fair, phases: drawn }) {
+  phases = drawn;
   ++studied;
   if (runs.has(place)) engine.close(runs.get(place).run);
   runs.delete(place);
@@ -98,9 +100,9 @@ function open({ place, number, scene, settings, method, fair, phases }) {
   const { settings: more, pace } = first ? atTheCostOf(first, asked) : { settings: [], pace: 1 };
   const opened = engine.open({ ...asked, settings: [...settings, ...more] });
   runs.set(place, {
-    run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10, pace, asked, opened, phases, number });
+    run: opened.run, series: opened.columns, goes_on: opened.goes_on, chunk: 10, pace, asked, opened, number });
   [seconds, made] = [0, 0];
-  postMessage({ kind: "opened", place, opened, pace });
+  postMessage({ kind: "opened", place, number, opened, pace });
   show(place);
 }
 
@@ -136,7 +138,12 @@ const actions = {
     engine.close(runs.get(place).run);
     runs.delete(place);
   },
+  draw({ phases: drawn }) {
+    phases = drawn;
+    for (const place of runs.keys()) show(place);
+  },
   go({ on }) {
+    if (on && runs.size === 0) throw new Error("there is no run that could go on");
     const begins = on && !going;
     going = on;
     if (begins) work();
@@ -150,6 +157,7 @@ const actions = {
     }
   },
   export({ place }) {
+    if (!runs.has(place)) throw new Error("there are no rows yet");
     const { run, series } = runs.get(place);
     postMessage({ kind: "exported", columns: columnsOf(engine, run, series, Infinity) });
   },
@@ -164,6 +172,6 @@ async function act(data) {
   try {
     await actions[data.kind](data);
   } catch (error) {
-    postMessage({ kind: "refused", of: data.kind, message: String(error.message) });
+    postMessage({ kind: "refused", of: data.kind, number: data.number, message: String(error.message) });
   }
 }

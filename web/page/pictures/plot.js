@@ -24,7 +24,9 @@ function range(lists, drawn, places) {
       if (value > most) most = value;
     }
   if (least > most) return [0, 1];
-  const margin = (most - least) * 0.05 || Math.max(1e-12, Math.abs(most) * 0.1);
+  // What is the same but for rounding is drawn as a line.
+  const size = Math.max(Math.abs(least), Math.abs(most));
+  const margin = most - least > size * 1e-12 ? (most - least) * 0.05 : Math.max(1e-12, size * 0.1);
   return [least - margin, most + margin];
 }
 
@@ -51,7 +53,7 @@ export class Plot {
       });
     this.canvas = document.createElement("canvas");
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${panel.curves.join(", ")}`);
+    this.canvas.setAttribute("aria-label", `${panel.title}; ${panel.y_label} over ${panel.x_label}: ${panel.curves.join(", ")}`);
     figure.append(caption, this.canvas);
     parent.append(figure);
     this.handles = [];

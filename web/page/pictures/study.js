@@ -24,6 +24,7 @@ export class Study {
 
   /** One run more. */
   hear({ method, error, seconds }) {
+    if (!this.points) return; // of a scene that is not here any more
     if (error > 0 && seconds > 0) this.points.get(method).push({ error, seconds });
     if (this.isDue) return;
     this.isDue = true;
