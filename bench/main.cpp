@@ -40,6 +40,7 @@ int main(int argc, char** argv) try {
       {"@STEPS@", bench::step_subjects(), bench::step_goals(), 21},
       {"@RUNS@", bench::recorded_subjects(), {}, 7},
       {"@SCENES@", bench::scene_subjects(), bench::scene_goals(), 21},
+      {"@SCENE_GRADIENTS@", bench::scene_gradient_subjects(), {}, 5},
       {"@PENDULUM_CHAINS@", bench::pendulum_chain_subjects(), bench::pendulum_chain_goals(), 21},
       {"@ENSEMBLES@", bench::ensemble_subjects(), bench::ensemble_goals(), 11},
       {"@BOUNDARY@", bench::boundary_subjects(), bench::boundary_goals(), 7},

@@ -25,11 +25,13 @@ KeyOf<NumberArray> vector_key(std::string name, std::string unit, std::string me
 }
 
 template <class S> S BasicSceneBodies<S>::varied_number(const std::string& key, double x) const {
-  if constexpr (!std::is_same_v<S, double>)
+  if constexpr (std::is_same_v<S, VariedNumber>)
     for (const VariedAt& each : varied)
       if (each.path == reads + "." + key) {
         each.is_read = true;
-        return S::variable(x, each.direction);
+        S out = each.number;
+        out.value = x;
+        return out;
       }
   return x;
 }
@@ -142,7 +144,7 @@ template <class S> void keep(BasicSceneBodies<S>& bodies, BasicNamedBody<S> body
   bodies.bodies.push_back(std::move(body));
 }
 
-template <class S> void read_point(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_point = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
   b.mass = bodies.number(table, mass);
@@ -150,9 +152,9 @@ template <class S> void read_point(BasicSceneBodies<S>& bodies, const Section& t
   b.body = bodies.scene.point_mass(b.mass, b.place, bodies.vector(table, velocity));
   b.mass_centre = b.body.centre;
   keep(bodies, b);
-}
+};
 
-template <class S> void read_rigid(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_rigid = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
   b.mass = bodies.number(table, mass);
@@ -166,9 +168,9 @@ template <class S> void read_rigid(BasicSceneBodies<S>& bodies, const Section& t
   b.body = bodies.scene.rigid_body(b.mass, b.inertia, b.place, q.template cast<S>(), b.velocity, w);
   b.mass_centre = b.body.centre;
   keep(bodies, b);
-}
+};
 
-template <class S> void read_pivoted(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_pivoted = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
   b.mass = bodies.number(table, pivoted_mass);
@@ -192,9 +194,9 @@ template <class S> void read_pivoted(BasicSceneBodies<S>& bodies, const Section&
   b.mass_centre = bodies.scene.point_of(b.body, b.to_centre);
   bodies.isolated = false;
   keep(bodies, b);
-}
+};
 
-template <class S> void read_planar(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_planar = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S> b;
   b.name = read_name(bodies, table);
   b.planar = true;
@@ -211,10 +213,10 @@ template <class S> void read_planar(BasicSceneBodies<S>& bodies, const Section& 
   b.body = bodies.scene.planar_body(b.mass, inertia, {at[0], at[1], b.angle}, {v[0], v[1], b.angular_velocity(2)});
   b.mass_centre = b.body.centre;
   keep(bodies, b);
-}
+};
 
 /// Links of equal length, each a point mass on a massless rod, in a straight line at first.
-template <class S> void read_chain(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_chain = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const std::string name = read_name(bodies, table);
   const long count = read_key(table, links);
   const S each_mass = bodies.number(table, chain_mass) / double(count);
@@ -241,7 +243,7 @@ template <class S> void read_chain(BasicSceneBodies<S>& bodies, const Section& t
     bodies.lines.push_back({last, here, 0.008});
     last = here;
   }
-}
+};
 
 }  // namespace
 
@@ -370,11 +372,7 @@ void read_kind(const std::vector<SceneKind>& kinds, BasicSceneBodies<S>& bodies,
     if (kind.name != name) continue;
     if (kind.has_switch) begin_switch(bodies, table);
     const std::size_t before = bodies.lines.size();
-    if constexpr (std::is_same_v<S, double>) {
-      kind.read(bodies, table);
-    } else {
-      kind.read_varied(bodies, table);
-    }
+    kind.read(bodies, table);
     if (kind.has_switch && table.has(switch_name.name))
       for (std::size_t k = before; k < bodies.lines.size(); ++k)
         bodies.lines[k].switched_by = int(bodies.scene.switches().names.size()) - 1;
@@ -395,28 +393,24 @@ Table table_of(const std::vector<SceneKind>& kinds) {
 
 const std::vector<SceneKind>& body_kinds() {
   static const std::vector<SceneKind> all{
-      {"point", "a point mass", read_point, read_point, {name_key, mass, position, velocity}, false},
+      {"point", "a point mass", read_point, {name_key, mass, position, velocity}, false},
       {"rigid",
        "moves and turns in space",
-       read_rigid,
        read_rigid,
        {name_key, mass, moments, position, attitude, velocity, angular_velocity},
        false},
       {"pivoted",
        "turns about a fixed point",
        read_pivoted,
-       read_pivoted,
        {name_key, pivoted_moments, pivot, pivoted_mass, centre, attitude, angular_velocity},
        false},
       {"planar",
        "moves in the plane of x and y",
        read_planar,
-       read_planar,
        {name_key, mass, planar_inertia, planar_position, angle, planar_velocity, planar_turning},
        false},
       {"chain",
        "point masses on massless rods, NAME.1, NAME.2, ...",
-       read_chain,
        read_chain,
        {name_key, links, chain_mass, chain_length, direction, chain_turning, hangs_on, hangs_at, ground_amplitude,
         ground_rate},
@@ -483,8 +477,15 @@ BasicSceneBodies<VariedNumber> read_varied_scene(const Section& scene, const std
   return out;
 }
 
+BasicSceneBodies<multibody::SecondNumber> read_second_scene(const Section& scene) {
+  BasicSceneBodies<multibody::SecondNumber> out;
+  read_all(scene, out);
+  return out;
+}
+
 template struct BasicSceneBodies<double>;
 template struct BasicSceneBodies<VariedNumber>;
+template struct BasicSceneBodies<multibody::SecondNumber>;
 template void read_kind(const std::vector<SceneKind>&, SceneBodies&, const Section&);
 
 }  // namespace lagroid::app

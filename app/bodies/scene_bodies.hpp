@@ -5,6 +5,7 @@
 
 #include <lagroid/core/derivatives/varied_directions.hpp>
 #include <lagroid/run/motion/shape.hpp>
+#include <lagroid/systems/multibody/control/second_number.hpp>
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <array>
@@ -54,10 +55,10 @@ template <class S = double> struct BasicAttachment {
 };
 using Attachment = BasicAttachment<>;
 
-/// A number of a scene by which derivatives are taken: where it stands, as effect.0.stiffness, and their direction.
+/// A number of a scene by which derivatives are taken: where it stands, as effect.0.stiffness, and what it is.
 struct VariedAt {
   std::string path;
-  int direction;
+  VariedNumber number;
   mutable bool is_read = false;  ///< as a number with a derivative
 };
 
@@ -149,12 +150,36 @@ inline const KeyOf<Texts> chosen_bodies{"bodies", {}, "", "names of bodies", {},
 std::vector<Key> ground_keys();
 std::vector<Key> end_keys();
 
+/// One generic function that reads a table, over numbers with derivatives, too. LAGROID_PLAIN_SCENES leaves those out
+/// of a program that never asks for any.
+class SceneReader {
+ public:
+  template <class Read> SceneReader(Read) : plain_(over<double, Read>) {
+#ifndef LAGROID_PLAIN_SCENES
+    varied_ = over<VariedNumber, Read>;
+    second_ = over<multibody::SecondNumber, Read>;
+#endif
+  }
+  void operator()(SceneBodies& bodies, const Section& table) const { plain_(bodies, table); }
+  void operator()(BasicSceneBodies<VariedNumber>& bodies, const Section& table) const { varied_(bodies, table); }
+  void operator()(BasicSceneBodies<multibody::SecondNumber>& bodies, const Section& table) const {
+    second_(bodies, table);
+  }
+
+ private:
+  template <class S, class Read> static void over(BasicSceneBodies<S>& bodies, const Section& table) {
+    Read()(bodies, table);
+  }
+  void (*plain_)(SceneBodies&, const Section&);
+  void (*varied_)(BasicSceneBodies<VariedNumber>&, const Section&) = nullptr;
+  void (*second_)(BasicSceneBodies<multibody::SecondNumber>&, const Section&) = nullptr;
+};
+
 /// What a table's `kind` stands for.
 struct SceneKind {
   const char* name;
   const char* about;
-  void (*read)(SceneBodies& bodies, const Section& table);
-  void (*read_varied)(BasicSceneBodies<VariedNumber>& bodies, const Section& table);
+  SceneReader read;
   std::vector<Key> keys = {};  ///< besides `kind`
   bool has_switch = true;      ///< an event can switch it, by a name
 };
@@ -189,5 +214,7 @@ SceneBodies read_scene_bodies(const Section& scene, bool on_its_way = false);
 /// The same over numbers with derivatives, by those at these places. Throws std::invalid_argument, one line, for one
 /// that is read as a plain number.
 BasicSceneBodies<VariedNumber> read_varied_scene(const Section& scene, const std::vector<VariedAt>& varied);
+/// The same over numbers with second derivatives, by places and attitudes alone (multibody::ControlledScene).
+BasicSceneBodies<multibody::SecondNumber> read_second_scene(const Section& scene);
 
 }  // namespace lagroid::app

@@ -63,7 +63,7 @@ template <class S> Drive<S> read_drive(const BasicSceneBodies<S>& bodies, const 
   return {!stays_zero(rate) || table.has(phase.name), rate, bodies.number(table, phase)};
 }
 
-template <class S> void read_gravity(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_gravity = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const Vector<S, 3> g = bodies.vector(table, acceleration);
   const auto heavy = bodies.chosen(table);
   const auto planar = [](const BasicNamedBody<S>* body) { return body->planar; };
@@ -77,9 +77,9 @@ template <class S> void read_gravity(BasicSceneBodies<S>& bodies, const Section&
     if (!stays_zero(body->mass))
       bodies.scene.add(multibody::BasicConstantForce<S>{{body->mass_centre}, body->mass * g});
   bodies.isolated = false;
-}
+};
 
-template <class S> void read_central(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_central = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const Vector<S, 3> origin = bodies.vector(table, centre);
   const S s = bodies.number(table, strength);
   for (const BasicNamedBody<S>* body : bodies.chosen(table)) {
@@ -89,17 +89,17 @@ template <class S> void read_central(BasicSceneBodies<S>& bodies, const Section&
     bodies.scene.add(multibody::BasicCentralGravity<S>{{body->mass_centre}, origin, s * body->mass});
   }
   bodies.isolated = false;
-}
+};
 
-template <class S> void read_mutual(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_mutual = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   auto gravity = std::make_unique<multibody::BasicMutualGravity<S>>(bodies.number(table, gravitation),
                                                                     bodies.number(table, softening));
   for (const BasicNamedBody<S>* body : bodies.chosen(table))
     if (!stays_zero(body->mass)) gravity->add(body->mass_centre, body->mass);
   bodies.scene.add_effects(std::move(gravity));
-}
+};
 
-template <class S> void read_charges(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_charges = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto charged = bodies.chosen(table);
   const std::vector<S> q = bodies.numbers(table, charges(charged.size()));
   const S constant = bodies.number(table, coulomb);
@@ -109,9 +109,9 @@ template <class S> void read_charges(BasicSceneBodies<S>& bodies, const Section&
       if (!stays_zero(q[i] * q[j]))
         bodies.scene.add(multibody::BasicInverseSquare<S>{
             {charged[j]->mass_centre, charged[i]->mass_centre}, -constant * q[i] * q[j], e});
-}
+};
 
-template <class S> void read_spring(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_spring = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = bodies.ends(table);
   const Vector<S, 3> between_ends = ends[1].place - ends[0].place;
   // Of ends that meet, the distance has no derivative.
@@ -121,7 +121,7 @@ template <class S> void read_spring(BasicSceneBodies<S>& bodies, const Section& 
     table.fail("points", "the ends of the spring meet at the start: its force has no direction");
   bodies.scene.add(multibody::BasicSpring<S>{{ends[0].site, ends[1].site}, bodies.number(table, stiffness), length});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
-}
+};
 
 /// Whether what acts on these ends acts in the plane.
 template <class S> bool turn_in_plane(const std::array<BasicAttachment<S>, 2>& ends) {
@@ -167,7 +167,7 @@ void turn(BasicSceneBodies<S>& bodies, const BasicAttachment<S>& end, const S& t
   }
 }
 
-template <class S> void read_torsion(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_torsion = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a torsion spring");
   if (turn_in_plane(ends)) {
     const auto angle = [](const BasicAttachment<S>& end) { return end.body ? end.body->angle : S(0); };
@@ -185,9 +185,9 @@ template <class S> void read_torsion(BasicSceneBodies<S>& bodies, const Section&
                                                     ends[0].seen(unit),
                                                     ends[1].seen(unit),
                                                     bodies.number(table, torsion_stiffness)});
-}
+};
 
-template <class S> void read_drag(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_drag = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const S motion = bodies.number(table, motion_drag);
   const S turning = bodies.number(table, turning_drag);
   if (stays_zero(motion) && stays_zero(turning))
@@ -207,9 +207,9 @@ template <class S> void read_drag(BasicSceneBodies<S>& bodies, const Section& ta
   }
   bodies.dissipates = true;
   bodies.isolated = false;
-}
+};
 
-template <class S> void read_damper(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_damper = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = bodies.ends(table);
   if ((ends[1].place - ends[0].place).norm() == S(0))
     table.fail("points", "the ends of the damper meet at the start: its force has no direction");
@@ -217,9 +217,9 @@ template <class S> void read_damper(BasicSceneBodies<S>& bodies, const Section& 
       multibody::Damper<multibody::BasicLength<S>, S>{{{ends[0].site, ends[1].site}}, bodies.number(table, damping)});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
   bodies.dissipates = true;
-}
+};
 
-template <class S> void read_cost(BasicSceneBodies<S>& bodies, const Section&) { bodies.counts_cost = true; }
+constexpr auto read_cost = []<class S>(BasicSceneBodies<S>& bodies, const Section&) { bodies.counts_cost = true; };
 
 template <class S>
 const BasicNamedBody<S>& require_point(const Section& table, const BasicNamedBody<S>* body, std::string_view effect) {
@@ -229,7 +229,7 @@ const BasicNamedBody<S>& require_point(const Section& table, const BasicNamedBod
   return *body;
 }
 
-template <class S> void read_rotating_frame(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_rotating_frame = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const Vector<S, 3> rate = bodies.vector(table, frame_rate);
   const bool centrifugal = read_key(table, centrifugal_key);
   for (const BasicNamedBody<S>* chosen : bodies.chosen(table)) {
@@ -239,9 +239,9 @@ template <class S> void read_rotating_frame(BasicSceneBodies<S>& bodies, const S
   }
   bodies.gyroscopic = true;
   bodies.isolated = false;
-}
+};
 
-template <class S> void read_magnetic(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_magnetic = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const Vector<S, 3> field = bodies.vector(table, field_key);
   const auto charged = bodies.chosen(table);
   const std::vector<S> q = bodies.numbers(table, charges(charged.size()));
@@ -249,9 +249,9 @@ template <class S> void read_magnetic(BasicSceneBodies<S>& bodies, const Section
     bodies.scene.gyroscopic_force(require_point(table, charged[i], "a magnetic field").body, q[i] * field);
   bodies.gyroscopic = true;
   bodies.isolated = false;
-}
+};
 
-template <class S> void read_force(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_force = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const BasicNamedBody<S>& body = bodies.named(table, body_key.name, read_key(table, body_key));
   const Vector<S, 3> arm = bodies.vector(table, acts_at);
   const Vector<S, 3> force = bodies.vector(table, force_key);
@@ -266,9 +266,9 @@ template <class S> void read_force(BasicSceneBodies<S>& bodies, const Section& t
     bodies.scene.add(multibody::BasicConstantForce<S>{{end.site}, force});
   }
   bodies.isolated = false;
-}
+};
 
-template <class S> void read_torque(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_torque = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const BasicNamedBody<S>& body = bodies.named(table, body_key.name, read_key(table, body_key));
   if (!body.planar && body.body.attitude.index < 0)
     table.fail("body", fmt::format("\"{}\" does not turn: a torque acts on bodies that do", body.name));
@@ -283,9 +283,9 @@ template <class S> void read_torque(BasicSceneBodies<S>& bodies, const Section& 
   }
   bodies.scene.add(multibody::BasicBodyTorque<S>{{}, {body.body.attitude}, torque});
   bodies.driven = true;
-}
+};
 
-template <class S> void read_motor(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_motor = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = turning_ends(bodies, table, "a motor");
   const Vector<S, 3> torque = bodies.vector(table, motor_torque);
   const Drive<S> drive = read_drive(bodies, table);
@@ -298,7 +298,7 @@ template <class S> void read_motor(BasicSceneBodies<S>& bodies, const Section& t
   bodies.scene.add(multibody::BasicMotor<S>{
       {}, {ends[0].attitude(), ends[1].attitude()}, ends[0].seen(torque), drive.rate, drive.phase});
   bodies.driven = true;
-}
+};
 
 }  // namespace
 
@@ -312,44 +312,29 @@ const std::vector<SceneKind>& effect_kinds() {
     return keys;
   };
   static const std::vector<SceneKind> all{
-      {"gravity", "a uniform one", read_gravity, read_gravity, {acceleration, chosen_bodies}},
-      {"central_gravity", "of a centre that rests", read_central, read_central, {strength, centre, chosen_bodies}},
-      {"mutual_gravity",
-       "of the bodies on each other",
-       read_mutual,
-       read_mutual,
-       {gravitation, softening, chosen_bodies}},
-      {"spring", "between two points", read_spring, read_spring, tie(stiffness, {rest_length})},
-      {"torsion_spring",
-       "between two bodies that turn",
-       read_torsion,
-       read_torsion,
-       {between, torsion_direction, torsion_stiffness}},
-      {"drag", "of a medium that rests", read_drag, read_drag, {motion_drag, turning_drag, chosen_bodies}, false},
-      {"damper", "between two points that do not meet", read_damper, read_damper, tie(damping)},
+      {"gravity", "a uniform one", read_gravity, {acceleration, chosen_bodies}},
+      {"central_gravity", "of a centre that rests", read_central, {strength, centre, chosen_bodies}},
+      {"mutual_gravity", "of the bodies on each other", read_mutual, {gravitation, softening, chosen_bodies}},
+      {"spring", "between two points", read_spring, tie(stiffness, {rest_length})},
+      {"torsion_spring", "between two bodies that turn", read_torsion, {between, torsion_direction, torsion_stiffness}},
+      {"drag", "of a medium that rests", read_drag, {motion_drag, turning_drag, chosen_bodies}, false},
+      {"damper", "between two points that do not meet", read_damper, tie(damping)},
       {"control_cost",
        "counts the kinetic terms, summed over the steps: a column, and a line of the report",
        read_cost,
-       read_cost,
        {},
        false},
-      {"force", "on a point of a body", read_force, read_force, {body_key, acts_at, force_key, drive_rate, phase}},
-      {"torque", "on a body", read_torque, read_torque, {body_key, torque_key}},
-      {"motor", "between two bodies that turn", read_motor, read_motor, {between, motor_torque, drive_rate, phase}},
-      {"charges",
-       "of the bodies on each other",
-       read_charges,
-       read_charges,
-       {any_charges, coulomb, softening, chosen_bodies}},
+      {"force", "on a point of a body", read_force, {body_key, acts_at, force_key, drive_rate, phase}},
+      {"torque", "on a body", read_torque, {body_key, torque_key}},
+      {"motor", "between two bodies that turn", read_motor, {between, motor_torque, drive_rate, phase}},
+      {"charges", "of the bodies on each other", read_charges, {any_charges, coulomb, softening, chosen_bodies}},
       {"magnetic_field",
        "a uniform one; point masses alone",
-       read_magnetic,
        read_magnetic,
        {field_key, any_charges, chosen_bodies},
        false},
       {"rotating_frame",
        "in which the bodies are seen; point masses alone",
-       read_rotating_frame,
        read_rotating_frame,
        {frame_rate, centrifugal_key, chosen_bodies},
        false}};

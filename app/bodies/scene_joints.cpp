@@ -137,7 +137,7 @@ S length_or(const BasicSceneBodies<S>& bodies, const Section& table, const std::
   }
 }
 
-template <class S> void read_rod(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_rod = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   const double apart = (values_of(ends[1].place) - values_of(ends[0].place)).stableNorm();
   const S given = length_or(bodies, table, ends, apart);
@@ -148,7 +148,7 @@ template <class S> void read_rod(BasicSceneBodies<S>& bodies, const Section& tab
                                      value_of(given), apart));
   bodies.scene.add(multibody::BasicRod<S>{{ends[0].site, ends[1].site}, given});
   bodies.lines.push_back({ends[0], ends[1], 0.008});
-}
+};
 
 /// Adds the damper that a joint with a key `damping` is, too.
 template <class S, class J>
@@ -158,16 +158,16 @@ void read_damping(BasicSceneBodies<S>& bodies, const Section& table, const KeyOf
   bodies.dissipates = true;
 }
 
-template <class S> void read_ball(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_ball = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   require_together(bodies, table, ends);
   bodies.scene.add(multibody::BasicCoincidence<S>{{ends[0].site, ends[1].site}});
   if (table.has(turning_damping.name)) require_turning(table, ends, "joint that rubs");
   read_damping(bodies, table, turning_damping,
                multibody::BasicRelativeTurn<S>{{}, {ends[0].attitude(), ends[1].attitude()}});
-}
+};
 
-template <class S> void read_hinge(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_hinge = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = joined_ends(bodies, table, "hinge");
   const Matrix<S, 3, 3> frame = frame_along(bodies, table, axis);
   for (int i = 0; i < 2; ++i) keep_right_angle<S>(bodies, ends, frame.col(i), frame.col(2));
@@ -189,13 +189,13 @@ template <class S> void read_hinge(BasicSceneBodies<S>& bodies, const Section& t
   bodies.scene.add(turn);
   bodies.nonholonomic = true;
   if (rate != 0) bodies.timed = true;
-}
+};
 
-template <class S> void read_weld(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_weld = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   keep_attitude(bodies, joined_ends(bodies, table, "weld"));
-}
+};
 
-template <class S> void read_slider(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_slider = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   require_turning(table, ends, "slider");
   const Matrix<S, 3, 3> frame = frame_along(bodies, table, axis);
@@ -207,16 +207,16 @@ template <class S> void read_slider(BasicSceneBodies<S>& bodies, const Section& 
   read_damping(
       bodies, table, sliding_damping,
       multibody::BasicInPlane<S>{{ends[0].site, ends[1].site}, {ends[0].attitude()}, ends[0].seen(frame.col(2))});
-}
+};
 
-template <class S> void read_plane(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_plane = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   const auto ends = tied_ends(bodies, table);
   if (!ends[0].turns_in_space())
     table.fail("between", "the first holds the plane: it must be a body that turns in space, or the ground");
   const Vector<S, 3> across = frame_along(bodies, table, normal).col(2);
   require_in_plane(bodies, table, ends, across);
   keep_in_plane(bodies, ends, across);
-}
+};
 
 template <class S> BasicNamedBody<S>& turning_body(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S>& body = bodies.named(table, body_key.name, read_key(table, body_key));
@@ -264,7 +264,7 @@ void add_on_arrows(BasicSceneBodies<S>& bodies, const Section& table, BasicNamed
   bodies.vakonomic = true;
 }
 
-template <class S> void read_rolling(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_rolling = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S>& ball = turning_body(bodies, table);
   if (ball.linear < 0) table.fail("body", fmt::format("\"{}\" turns about a fixed point and cannot roll", ball.name));
   const S r = bodies.number(table, radius);
@@ -283,9 +283,9 @@ template <class S> void read_rolling(BasicSceneBodies<S>& bodies, const Section&
   plate.position = {0.0, 0.0, value_of(ball.place(2) - r)};
   if (bodies.scenery.empty()) bodies.scenery.push_back(plate);
   ball.radius = value_of(r);
-}
+};
 
-template <class S> void read_spin(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_spin = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S>& body = turning_body(bodies, table);
   const Vector<S, 3> along = frame_along(bodies, table, spin_axis).col(2);
   const bool in_body = read_key(table, fixed_in) != *fixed_in.fallback;
@@ -299,9 +299,9 @@ template <class S> void read_spin(BasicSceneBodies<S>& bodies, const Section& ta
     add_on_arrows(bodies, table, body, multibody::BasicPrescribedSpin<S>{{}, {body.body.attitude}, along, rate});
   }
   if (rate != 0) bodies.timed = true;
-}
+};
 
-template <class S> void read_blade(BasicSceneBodies<S>& bodies, const Section& table) {
+constexpr auto read_blade = []<class S>(BasicSceneBodies<S>& bodies, const Section& table) {
   BasicNamedBody<S>& body = bodies.named(table, body_key.name, read_key(table, body_key));
   if (!body.planar)
     table.fail("body", fmt::format("\"{}\" does not move in the plane: a blade needs a body of kind "
@@ -322,7 +322,7 @@ template <class S> void read_blade(BasicSceneBodies<S>& bodies, const Section& t
                                    body.name, slip, rate));
   add_on_arrows(bodies, table, body, blade);
   if (rate != 0) bodies.timed = true;
-}
+};
 
 /// The keys of what ties two bodies, and these.
 std::vector<Key> tie(const std::vector<Key>& more) {
@@ -342,20 +342,19 @@ std::vector<Key> hold(int rows, const std::vector<Key>& more) {
 
 const std::vector<SceneKind>& joint_kinds() {
   static const std::vector<SceneKind> all{
-      {"rod", "keeps the distance of the points", read_rod, read_rod, tie({length})},
-      {"ball", "makes the points one; between planar bodies a pin", read_ball, read_ball, tie({turning_damping})},
-      {"hinge", "makes the points one and keeps an axis", read_hinge, read_hinge,
-       tie({axis, turning_damping, hinge_rate})},
-      {"weld", "makes the points one and keeps the attitude", read_weld, read_weld, tie({})},
-      {"slider", "the second moves along an axis fixed in the first, without turning", read_slider, read_slider,
+      {"rod", "keeps the distance of the points", read_rod, tie({length})},
+      {"ball", "makes the points one; between planar bodies a pin", read_ball, tie({turning_damping})},
+      {"hinge", "makes the points one and keeps an axis", read_hinge, tie({axis, turning_damping, hinge_rate})},
+      {"weld", "makes the points one and keeps the attitude", read_weld, tie({})},
+      {"slider", "the second moves along an axis fixed in the first, without turning", read_slider,
        tie({axis, sliding_damping})},
-      {"plane", "the second's point stays in the plane through the first's", read_plane, read_plane, tie({normal})},
+      {"plane", "the second's point stays in the plane through the first's", read_plane, tie({normal})},
       {"rolling", "a ball rolls without slipping on a level plate; one that is tilted is one under a gravity that is",
-       read_rolling, read_rolling, hold(multibody::Rolling::rows, {radius, plate_rate})},
-      {"spin", "the body turns about an axis at a rate", read_spin, read_spin,
+       read_rolling, hold(multibody::Rolling::rows, {radius, plate_rate})},
+      {"spin", "the body turns about an axis at a rate", read_spin,
        hold(multibody::BodySpin::rows, {spin_axis, fixed_in, spin_rate})},
       {"blade", "a planar body moves across a blade at a rate alone: a wheel, the edge of a sleigh", read_blade,
-       read_blade, hold(multibody::Blade::rows, {blade_direction, ahead, blade_rate})}};
+       hold(multibody::Blade::rows, {blade_direction, ahead, blade_rate})}};
   return all;
 }
 

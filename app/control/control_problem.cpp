@@ -1,6 +1,7 @@
 #include "control_problem.hpp"
 
 #include "../reading/kinds.hpp"
+#include "bodies/bodies_keys.hpp"
 #include "control_scene.hpp"
 #include "problems/problems.hpp"
 
@@ -10,11 +11,11 @@
 namespace lagroid::app {
 
 std::span<const ControlProblem* const> control_problems() {
-  static const std::array all{&double_integrator_problem(), &swing_up_problem(),       &planar_mass_problem(),
-                              &low_thrust_problem(),        &dubins_car_problem(),     &reeds_shepp_car_problem(),
-                              &hovercraft_problem(),        &steered_sleigh_problem(), &steered_car_problem(),
-                              &satellite_turn_problem(),    &rolled_ball_problem(),    &pendulum_problem(),
-                              &rigid_body_problem(),        &two_link_arm_problem(),   &falling_cat_problem()};
+  static const std::array all{
+      &double_integrator_problem(), &swing_up_problem(),        &planar_mass_problem(), &low_thrust_problem(),
+      &dubins_car_problem(),        &reeds_shepp_car_problem(), &hovercraft_problem(),  &steered_sleigh_problem(),
+      &steered_car_problem(),       &satellite_turn_problem(),  &rolled_ball_problem(), &pendulum_problem(),
+      &rigid_body_problem(),        &two_link_arm_problem(),    &falling_cat_problem(), &controlled_bodies()};
   return all;
 }
 
@@ -30,11 +31,13 @@ Table control_table() {
   Table table;
   for (const ControlProblem* each : control_problems()) {
     Table kind{
-        {KeyOf<OneOf>{std::string(keys::control), {{std::string(each->name())}}, "", std::string(each->summary())},
-         optional_table("parameters", {each->parameters()}, "of the system")},
+        {KeyOf<OneOf>{std::string(keys::control), {{std::string(each->name())}}, "", std::string(each->summary())}},
         {},
         std::string(each->summary())};
-    for (Key& key : control_scene_keys(*each)) kind.keys.push_back(std::move(key));
+    const bool of_bodies = each == &controlled_bodies();
+    if (!of_bodies) kind.keys.push_back(optional_table("parameters", {each->parameters()}, "of the system"));
+    for (Key& key : of_bodies ? controlled_bodies_keys() : control_scene_keys(*each))
+      kind.keys.push_back(std::move(key));
     table.kinds.push_back(std::move(kind));
   }
   return table;

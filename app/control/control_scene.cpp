@@ -1,5 +1,7 @@
 #include "control_scene.hpp"
 
+#include "search_keys.hpp"
+
 #include <lagroid/solvers/control/ipopt/has_ipopt.hpp>
 #include <lagroid/solvers/methods/declared_methods.hpp>
 #include <lagroid/solvers/missing_library.hpp>
@@ -20,30 +22,11 @@ namespace {
 constexpr std::array<Word<ControlMethod>, 2> control_words{
     {{"interior_point", ControlMethod::interior_point}, {"ipopt", ControlMethod::ipopt}}};
 
-const NumberRule a_tolerance{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }};
-const KeyOf<Number> duration_key{"duration", {positive}, "s", "T; where it is free, the first guess of it"};
-const KeyOf<Flag> free_key{"free", {}, "", "true: the duration is an unknown", false};
-const KeyOf<Whole> stages_key{"stages", {2, 1'000'000}, "", "N, arrows between the ends", 100L};
-const KeyOf<Whole> starts_key{
-    "starts", {1, 100'000}, "", "trajectories to start from: straight, drifting, then wound and bent", 10L};
-const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of the starts", 1L};
-const KeyOf<Number> tolerance_key{
-    "tolerance", {a_tolerance}, "", "on every part of the KKT residual", ControlOptions().tolerance};
-const KeyOf<Whole> iterations_key{
-    "iterations", {1, 1'000'000}, "", "of each start, at most", long(ControlOptions().max_iterations)};
-
 KeyOf<OneOf> method_key() {
   const auto words = words_of(control_words);
   return {
       "method", {words}, "", "on the manifold of trajectories; by IPOPT in a chart of it, as a check", words.front()};
 }
-
-const KeyOf<Number> patience_key{"patience",
-                                 {nonnegative},
-                                 "",
-                                 "a start is given up after so many times the iterations of the slowest that has "
-                                 "converged, at least 100; 0: none is",
-                                 ControlSearchOptions().patience};
 
 const KeyOf<Whole> samples_key{"samples", {1, 100'000'000}, "", "how often the problem is solved anew"};
 const KeyOf<Number> disturbance_key{"disturbance",
@@ -206,11 +189,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   out.method = choice_of(control_words, read_key(solver, method_key()));
   if (out.method == ControlMethod::ipopt && !has_ipopt())
     solver.fail("method", MissingLibrary("\"ipopt\"", "IPOPT", "coinor-libipopt-dev").what());
-  out.search.starts = int(read_key(solver, starts_key));
-  out.search.seed = std::uint64_t(read_key(solver, seed_key));
-  out.search.solver.tolerance = read_key(solver, tolerance_key);
-  out.search.patience = read_key(solver, patience_key);
-  out.search.solver.max_iterations = int(read_key(solver, iterations_key));
+  read_search(solver, out.search);
   if (scene.has("loop")) {
     if (!out.phases.empty()) scene.fail("loop", "looks ahead in one phase; leave out [loop], or give [horizon]");
     const auto is_free = [](bool free) { return free; };
@@ -237,6 +216,8 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
   for (const std::string& control : problem.controls()) bounds.push_back(bound_key(control));
   std::vector<Key> through;
   for (const std::string& state : states) through.push_back(phase_keys::through(state));
+  std::vector<Key> solver = search_keys();
+  solver.insert(solver.begin(), method_key());
   const Table phase{{phase_keys::name, phase_keys::duration, phase_keys::free, phase_keys::range, phase_keys::stages,
                      phase_keys::constraints,
                      optional_table("through", {through}, "numbers of the state where it ends"), on_key("on"),
@@ -255,8 +236,7 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
                        "that of the phases"},
           KeyOf<Tables>{"phase", {phase}, "", "one after another, in place of the horizon", {}, "one"},
           optional_table("bounds", {bounds}, "of the controls"),
-          optional_table("solver", {{method_key(), starts_key, seed_key, tolerance_key, iterations_key, patience_key}},
-                         "of the search"),
+          optional_table("solver", {solver}, "of the search"),
           optional_table("loop", {{samples_key, disturbance_key, loop_iterations_key, loop_tolerance_key, usable_key}},
                          "the problem solved anew at every sample, of the length of a stage")};
 }

@@ -70,8 +70,7 @@ LinearisedScene::Write write_with(const Section& scene, const std::vector<SceneN
   return [scene, numbers](const std::vector<V>& x) {
     std::vector<VariedAt> varied;
     for (std::size_t i = 0; i < x.size(); ++i)
-      for (int direction = 0; direction < varied_at_once; ++direction)
-        if (x[i].tangent(direction) != 0) varied.push_back({numbers[i].path, direction});
+      if (!multibody::stays_zero(x[i] - x[i].value)) varied.push_back({numbers[i].path, x[i]});
     const auto bodies = std::make_shared<VariedBodies>(read_varied_scene(scene, varied));
     return multibody::WrittenScene{std::move(bodies->scene),
                                    [bodies](const ObservedScene& node) { return observed(*bodies, node); },

@@ -33,7 +33,7 @@ class WithColumns final : public LinearisedMotion {
   StepReport advance() override { return motion_->advance(); }
   bool linearise() override { return motion_->linearise(); }
   int stages() const override { return motion_->stages(); }
-  const LinearStep& stage(int k) const override { return motion_->stage(k); }
+  const StepDerivative& stage(int k) const override { return motion_->stage(k); }
   void serialize(NumberArchive& archive) override { motion_->serialize(archive); }
 
   NodeValues observe() const override { return completed(motion_->observe(), motion_->time()); }

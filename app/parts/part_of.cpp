@@ -23,7 +23,7 @@ constexpr const char* least = "files";
 
 /// The part for a scene: by the key that its family is recognised by.
 std::string part_of(const Section& scene) {
-  if (scene.has(keys::bodies)) return "bodies";
+  if (scene.has(keys::bodies) && !scene.has(keys::control)) return "bodies";
   if (!scene.has(keys::system) || scene.has(keys::sweep) || scene.has(keys::optimisation) || scene.has(keys::control))
     return whole;
   std::vector<std::string> names(systems_with_parts.begin(), systems_with_parts.end());

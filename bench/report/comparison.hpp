@@ -68,6 +68,7 @@ std::string control_table(const Results& results);
 std::vector<Subject> recorded_subjects();
 std::vector<Subject> scene_subjects();
 std::vector<Goal> scene_goals();
+std::vector<Subject> scene_gradient_subjects();
 std::vector<Subject> pendulum_chain_subjects();
 std::vector<Goal> pendulum_chain_goals();
 std::vector<Subject> ensemble_subjects();

@@ -1,7 +1,9 @@
 #pragma once
 /// Optimal control from many starts: one start finds one local minimum, and which one is chance. The first start is the
-/// straight trajectory, the second what the motion does by itself, bent toward the end; the others wind about the loops
-/// of the groupoid and are bent by sine modes, with the momenta of such a motion (`settle`) where there are any.
+/// straight trajectory, the second what the motion does by itself, bent toward the end; the others are bent by sine
+/// modes, with the momenta of such a motion (`settle`) where there are any, and two of three wind about the loops of
+/// the groupoid. From rest a car moves aside by none of the first two: there its constraints are dependent, and what
+/// would lower their violation is of second order.
 ///
 ///     const ControlSearch<DubinsCar> found = search_control(task, 100, {.starts = 12});
 ///     for (const auto& each : found.minima) std::cout << each.report.cost << '\n';  // cheapest first

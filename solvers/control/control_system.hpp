@@ -33,6 +33,14 @@
 
 namespace lagroid {
 
+/// Where the derivatives of a stage go, along x = (a, b, du, t) (transcription.hpp): of the cost, of each equality row
+/// by row, and the Hessian of l + <lambda, phi>.
+struct StagePlaces {
+  double* gradient;
+  double* equality;
+  double* hessian;
+};
+
 /// Base of optimal control problems. The derived class writes, as const templates on the scalar S,
 ///
 ///     S cost(const Arrow<S>& g, const Controls<S>& u, const S& h)                             l
@@ -47,6 +55,12 @@ namespace lagroid {
 /// where what they restrict is free:
 ///
 ///     Vector<S, node_equalities> node_constraint(const Object<S>& q)
+///
+/// Where its parameters ask for no inequality, it may say so, `bool has_inequalities() const`: then none is evaluated.
+/// One that knows the derivatives of its stages, second ones of l + <lambda, phi>, writes them (else they are
+/// automatic):
+///
+///     void stage_derivatives(g, u, h, const double* lambda, const StagePlaces& out)
 ///
 /// A task in several phases, one after another, gives each its duration, bounds and parameters, and what is to hold
 /// where it ends:

@@ -161,9 +161,9 @@ class InteriorPoint {
   StageRows dual_;
   StageRows slack_step_;
   StageRows multiplier_step_;
-  StageRows equality_;  // what a direction is to correct: phi, or phi with a second-order correction
-  StageRows gap_;       // gamma + s, likewise
-  TrajectoryDisplacement gradient_;
+  StageRows equality_;               // what a direction is to correct: phi, or phi with a second-order correction
+  StageRows gap_;                    // gamma + s, likewise
+  TrajectoryDisplacement gradient_;  // of the Lagrangian, where the trajectory stands
   KktVector right_;
   KktVector step_;
   KktVector first_step_;  // before a second-order correction

@@ -37,7 +37,8 @@ class StageKkt {
 
   /// Which second derivatives of the stages' Lagrangians the matrix has.
   enum class HessianPart { exact, none };
-  /// The matrix of these + sum_i sigma_i dgamma_i^T dgamma_i and of the equalities' derivatives.
+  /// The matrix of these + sum_i sigma_i dgamma_i^T dgamma_i and of the equalities' derivatives. They are read where it
+  /// is factored, stage by stage, so that what a stage needs is at hand; till then they stay as they are.
   void assemble(const StageDerivatives& derivatives, const StageRows& sigma,
                 HessianPart hessian_part = HessianPart::exact);
 
@@ -52,7 +53,7 @@ class StageKkt {
   /// The negative eigenvalues of the matrix at a minimum: one for each equality.
   long equalities() const;
 
-  /// Solves the factored system, and once more for what round-off has left.
+  /// Solves the factored system, and again for what round-off has left, until that is little.
   void solve(const KktVector& right, KktVector& out);
 
  private:
@@ -68,12 +69,21 @@ class StageKkt {
     return at.phase < 0 ? x.nodes[0][at.component] : x.durations[std::size_t(at.phase)];
   }
 
-  int block_of(long stage) const { return sizes_.control + sizes_.equalities_of(stage) + sizes_.node; }
+  /// Where v_{k+1} begins in y_k, behind controls and multipliers.
+  int target_of(long stage) const { return sizes_.control + sizes_.equalities_of(stage); }
+  int block_of(long stage) const { return target_of(stage) + sizes_.node; }
   int border_of_start(int component) const { return border_index_[std::size_t(component)]; }
+  const double* stage_hessian(long stage);
+  void assemble_stage(long stage);
+  void pass_on(long stage, double* work);
+  void eliminate_border(long stage);
   void keep_zero(long stage, int at);
-  void eliminate(const KktVector& right, KktVector& out);
-  /// right - (the matrix) out.
-  void residual(const KktVector& right, const KktVector& out, KktVector& left) const;
+  void take(const KktVector& right);
+  enum class Solution { first, corrected };
+  void eliminate(Solution which);
+  void give(KktVector& out) const;
+  void subtract_product();
+  double largest_right() const;
 
   TranscriptionSizes sizes_;
   std::vector<bool> free_end_;
@@ -83,26 +93,39 @@ class StageKkt {
   std::vector<int> columns_;  // of each stage: how many of the unknowns beside have begun
   int border_ = 0;            // how many there are
   int block_ = 0;             // of the largest y_k
+  int row_ = 0;               // its length with padding
 
+  const StageDerivatives* derivatives_ = nullptr;
+  const StageRows* sigma_ = nullptr;
+  HessianPart hessian_part_ = HessianPart::exact;
   double primal_ = 0;
   StageRows dual_;
-  // Rows of a stage are of its own lengths, one after another.
-  StageRows diagonal_;          // block x block
-  StageRows coupling_;          // block x node, to v_k of the stage before
-  StageRows bordered_;          // block x columns
+  // Of each stage, padded rows: the transposed where a row belongs to an unknown of elsewhere.
+  StageRows diagonal_;          // block rows
+  StageRows coupling_;          // node rows: to v_k, of the stage before
+  StageRows bordered_;          // a row for each unknown beside
   std::vector<double> corner_;  // border x border
 
-  std::vector<SymmetricFactorSized> factors_;
-  StageRows passed_;         // node x node: the v-part of the inverse of a pivot block
-  StageRows border_solved_;  // block x columns: the pivot block's inverse times the border there
+  // Elimination goes by the inverses of pivot blocks: products wait for nothing, as substitutions do for each unknown.
+  std::vector<SymmetricFactorSized> factors_;  // of each size of a block
+  StageRows inverse_;                          // block rows
+  StageRows border_solved_;                    // it times the border there
   SymmetricFactorSized corner_factor_;
   std::vector<double> corner_work_;
-  StageRows right_;  // block: right-hand sides on their way, then solutions
+  std::vector<double> corner_inverse_;
+  StageRows right_;       // right-hand sides, y_k
+  StageRows eliminated_;  // on their way
+  StageRows solution_;
   std::vector<double> border_right_;
-  std::vector<double> block_work_;   // block x block, or a stage's Hessian
-  std::vector<double> column_work_;  // block x max(node, border)
-  KktVector left_;
-  KktVector correction_;
+  std::vector<double> border_eliminated_;
+  std::vector<double> border_step_;
+  std::vector<double> border_solution_;
+  std::vector<double> hessian_;      // of a stage
+  std::vector<double> no_hessian_;   // zeros
+  std::vector<double> block_work_;   // block rows
+  std::vector<double> passed_rows_;  // node rows: the v-part of a pivot block's inverse times the coupling
+  std::vector<double> row_work_;
+  std::vector<double> weights_;  // of a node
 };
 
 }  // namespace lagroid

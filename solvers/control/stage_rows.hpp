@@ -15,11 +15,18 @@
 
 namespace lagroid {
 
+/// A row of gamma that is sign (u_control - its bound); sign zero: the phase has it not.
+struct ControlBound {
+  int control;
+  double sign;
+};
+
 /// Stages with one duration, one after another.
 struct TranscriptionPhase {
   long end = 0;  ///< the stage after its last
   bool duration_is_free = false;
   std::vector<bool> control_is_fixed;  ///< of each control; empty: none is
+  std::vector<ControlBound> bounds;    ///< the last rows of gamma, as many in every phase
 };
 
 /// How many numbers there are of each kind.
@@ -33,6 +40,8 @@ struct TranscriptionSizes {
   std::vector<TranscriptionPhase> phases;
   std::vector<int> conditions;  ///< of each stage, on nodes, after its phi
 
+  /// How many rows of gamma are no bounds of controls.
+  int general_inequality() const { return inequality - int(phases.front().bounds.size()); }
   int variables() const { return 2 * node + control + 1; }
   int equalities_of(long stage) const { return equality - node_equality + conditions[std::size_t(stage)]; }
   int phase_of(long stage) const {

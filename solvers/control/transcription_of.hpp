@@ -56,6 +56,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       TranscriptionPhase& phase = sizes_.phases.emplace_back();
       phase.end = (p == 0 ? 0 : sizes_.phases[p - 1].end) + start.phases[p].stages;
       phase.duration_is_free = phases_[p].duration_is_free;
+      for (const Bound& each : bounds_) phase.bounds.push_back({each.control, each.holds(phases_[p]) ? each.sign : 0});
       for (int i = 0; i < Sys::controls; ++i) {
         if (phases_[p].lower(i) < phases_[p].upper(i)) continue;
         phase.control_is_fixed.resize(Sys::controls);
@@ -85,6 +86,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     now_.boundary = boundary;
     locate_conditions();
     tried_ = now_;
+    has_tried_ = false;
   }
   /// Another trajectory of as many stages, and what the task's ends lead to.
   void stand_at(ControlTrajectory<Sys> path, const A& boundary) {
@@ -94,6 +96,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     if (start_is_free_ && !now_.path.start) now_.path.start = groupoid.unit(groupoid.source(boundary));
     locate_conditions();
     tried_ = now_;
+    has_tried_ = false;
   }
 
   /// How many rows of gamma there are before those of the controls' bounds.
@@ -104,17 +107,19 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   const std::vector<bool>& free_end() const override { return free_end_; }
 
   void values(StageValues& out) const override {
-    const ControlTrajectory<Sys>& path = tried_.path;
+    const Standing& latest = has_tried_ ? tried_ : now_;
+    const ControlTrajectory<Sys>& path = latest.path;
     long k = 0;
     for (std::size_t p = 0; p < phases_.size(); ++p)
       for (; k < sizes_.phases[p].end; ++k) {
         const auto at = std::size_t(k);
         const ControlPhase<Sys>& phase = phases_[p];
+        const bool inequalities_hold = inequalities_of(phase);
         const auto f = functions<double>(phase.system, path.arrows[at], path.controls[at], path.phases[p].step);
         out.cost[k][0] = f.cost;
         for (int i = 0; i < Sys::equalities; ++i) out.equality[k][i] = f.equality(i);
         for (int i = 0; i < Sys::inequalities; ++i)
-          out.inequality[k][i] = phase.inequalities_hold ? f.inequality(i) : not_there;
+          out.inequality[k][i] = inequalities_hold ? f.inequality(i) : not_there;
         for (std::size_t i = 0; i < duration_bounds_.size(); ++i)
           out.inequality[k][Sys::inequalities + int(i)] =
               duration_bounds_[i].holds(phase) && begins(k, p)
@@ -126,7 +131,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
                                       : not_there;
       }
     for (std::size_t i = 0; i < conditions_.size(); ++i)
-      conditions_[i].psi->values(task_.system.groupoid, tried_.nodes[i],
+      conditions_[i].psi->values(task_.system.groupoid, latest.nodes[i],
                                  out.equality[conditions_[i].stage] + conditions_[i].row);
   }
 
@@ -136,14 +141,20 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     for (std::size_t p = 0; p < phases_.size(); ++p)
       for (; k < sizes_.phases[p].end; ++k) {
         const ControlPhase<Sys>& phase = phases_[p];
-        const double* weights = phase.inequalities_hold ? z[k] : none.data();
-        if constexpr (framed) {
-          along_frame(phase.system, k, now_.path.phases[p].step, lambda[k], weights, out);
+        const bool inequalities_hold = inequalities_of(phase);
+        const double* weights = inequalities_hold ? z[k] : none.data();
+        const double h = now_.path.phases[p].step;
+        if constexpr (knows_derivatives) {
+          const auto at = std::size_t(k);
+          phase.system.stage_derivatives(now_.path.arrows[at], now_.path.controls[at], h, lambda[k],
+                                         StagePlaces{out.gradient[k], out.equality[k], out.hessian[k]});
+          if constexpr (Sys::inequalities > 0)
+            if (inequalities_hold) by_jets<Part::inequalities>(phase.system, k, h, lambda[k], weights, out);
         } else {
-          along_ends(phase.system, k, now_.path.phases[p].step, lambda[k], weights, out);
+          by_jets<Part::all>(phase.system, k, h, lambda[k], weights, out);
         }
         double* rows = out.inequality[k];
-        if (!phase.inequalities_hold) std::fill(rows, rows + Sys::inequalities * d, 0.0);
+        if (!inequalities_hold) std::fill(rows, rows + Sys::inequalities * d, 0.0);
         std::fill(rows + Sys::inequalities * d, rows + sizes_.inequality * d, 0.0);
         for (std::size_t i = 0; i < duration_bounds_.size(); ++i)
           if (duration_bounds_[i].holds(phase) && begins(k, p))
@@ -156,6 +167,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   }
 
   void try_displacement(const TrajectoryDisplacement& by, double fraction) override {
+    has_tried_ = true;
     const G& groupoid = task_.system.groupoid;
     const auto node = [&](long k) {
       AlgebroidVector<G> v;
@@ -189,7 +201,10 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     for (std::size_t p = 0; p < phases_.size(); ++p)
       tried_.path.phases[p].step = now_.path.phases[p].step * std::exp(fraction * by.durations[p]);
   }
-  void accept() override { now_ = tried_; }
+  void accept() override {
+    std::swap(now_, tried_);
+    has_tried_ = false;
+  }
 
  private:
   static constexpr int n = Sys::dimension;
@@ -243,6 +258,12 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     Vector<S, Sys::equalities> equality;
     Vector<S, Sys::inequalities> inequality;
   };
+
+  static bool inequalities_of(const ControlPhase<Sys>& phase) {
+    if constexpr (requires { phase.system.has_inequalities(); })
+      if (!phase.system.has_inequalities()) return false;
+    return phase.inequalities_hold;
+  }
 
   template <class S>
   static Functions<S> functions(const Sys& system, const ArrowOf<G, S>& g, const Vector<S, Sys::controls>& u,
@@ -337,6 +358,25 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     system.weighted_constraint(g, u, h, lambda);
   };
 
+  /// Systems whose derivatives need no jets along all directions of a stage.
+  static constexpr bool knows_derivatives =
+      requires(const Sys& system, const A& g, const Vector<double, Sys::controls>& u, double h, const double* lambda,
+               const StagePlaces& out) {
+    system.stage_derivatives(g, u, h, lambda, out);
+  };
+  /// What jets give: all of a stage, or what its inequalities add.
+  enum class Part { all, inequalities };
+  template <Part Which>
+  void by_jets(const Sys& system, long stage, double h, const double* lambda, const double* z,
+               StageDerivatives& out) const {
+    if constexpr (framed) {
+      along_frame<Which>(system, stage, h, lambda, z, out);
+    } else {
+      along_ends<Which>(system, stage, h, lambda, z, out);
+    }
+  }
+  template <Part Which> static void place_second(double& out, double x) { out = Which == Part::all ? x : out + x; }
+
   template <class J, class Place>
   void place_rows(const Functions<J>& f, long stage, const Place& place, StageDerivatives& out) const {
     place(f.cost, out.gradient[stage]);
@@ -345,12 +385,20 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   }
   /// The stage's Lagrangian. at<T>() are arrow, controls and duration over jets T of N variables; place(jet, row)
   /// writes the first derivatives of each function.
-  template <int N, class At, class Place>
+  template <int N, Part Which, class At, class Place>
   SecondJet<double, N> lagrangian_of(const Sys& system, const At& at, long stage, const double* lambda, const double* z,
                                      const Place& place, StageDerivatives& out) const {
     using J = SecondJet<double, N>;
     const auto& [g, u, h] = at.template operator()<J>();
-    if constexpr (weighs) {
+    if constexpr (Which == Part::inequalities) {
+      const Vector<J, Sys::inequalities> gamma = system.inequality(g, u, h);
+      J sum(0.0);
+      for (int i = 0; i < Sys::inequalities; ++i) {
+        place(gamma(i), out.inequality[stage] + i * d);
+        sum += gamma(i) * z[i];
+      }
+      return sum;
+    } else if constexpr (weighs) {
       using First = Jet<double, N>;
       const auto& [g1, u1, h1] = at.template operator()<First>();
       place_rows(functions<First>(system, g1, u1, h1), stage, place, out);
@@ -371,6 +419,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   }
 
   /// In one pass along the arrow's frame, pushed to its ends (second_derivatives.hpp).
+  template <Part Which>
   void along_frame(const Sys& system, long stage, double h, const double* lambda, const double* z,
                    StageDerivatives& out) const requires framed {
     constexpr int f = arrow_dimension_of<G>();
@@ -397,7 +446,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       }
       for (int i = 0; i < others; ++i) row[2 * n + i] = gradient(f + i);
     };
-    const SecondJet<double, all> lagrangian = lagrangian_of<all>(system, arguments, stage, lambda, z, push, out);
+    const SecondJet<double, all> lagrangian = lagrangian_of<all, Which>(system, arguments, stage, lambda, z, push, out);
 
     const Matrix<double, all, all> whole = lagrangian.hessian();
     const Matrix<double, f, f> hessian = whole.template topLeftCorner<f, f>();
@@ -411,10 +460,11 @@ template <class Sys> class TranscriptionOf final : public Transcription {
         for (int j = 0; j < f; ++j) columns(j, i) = rows(i, j);
       const Matrix<double, n, n> transposed = groupoid.template frame_to_end<Second>(g, columns);
       for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
+        for (int j = 0; j < (First == Second ? i + 1 : n); ++j) {
           const int row = (First == End::source ? 0 : n) + i;
           const int column = (Second == End::source ? 0 : n) + j;
-          square[row * d + column] = square[column * d + row] = transposed(j, i);
+          place_second<Which>(square[row * d + column], transposed(j, i));
+          if (row != column) place_second<Which>(square[column * d + row], transposed(j, i));
         }
     };
     place.template operator()<End::source, End::source>(hessian);
@@ -424,14 +474,17 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     const Matrix<double, n, others> target = groupoid.template frame_to_end<End::target>(g, beside);
     for (int j = 0; j < others; ++j) {
       for (int i = 0; i < n; ++i) {
-        square[i * d + 2 * n + j] = square[(2 * n + j) * d + i] = source(i, j);
-        square[(n + i) * d + 2 * n + j] = square[(2 * n + j) * d + n + i] = target(i, j);
+        place_second<Which>(square[i * d + 2 * n + j], source(i, j));
+        place_second<Which>(square[(2 * n + j) * d + i], source(i, j));
+        place_second<Which>(square[(n + i) * d + 2 * n + j], target(i, j));
+        place_second<Which>(square[(2 * n + j) * d + n + i], target(i, j));
       }
-      for (int i = 0; i < others; ++i) square[(2 * n + i) * d + 2 * n + j] = whole(f + i, f + j);
+      for (int i = 0; i < others; ++i) place_second<Which>(square[(2 * n + i) * d + 2 * n + j], whole(f + i, f + j));
     }
   }
 
   /// Along both ends, by the operations of the groupoid alone.
+  template <Part Which>
   void along_ends(const Sys& system, long stage, double h, const double* lambda, const double* z,
                   StageDerivatives& out) const {
     const G& groupoid = task_.system.groupoid;
@@ -443,8 +496,9 @@ template <class Sys> class TranscriptionOf final : public Transcription {
                           J::variable(0, d - 1).chain(h, h, h)};  // h exp(x)
     };
     const auto place = [](const auto& of, double* row) { Eigen::Map<Vector<double, d>>{row} = of.gradient(); };
-    const SecondJet<double, d> lagrangian = lagrangian_of<d>(system, arguments, stage, lambda, z, place, out);
-    Eigen::Map<Matrix<double, d, d>>{out.hessian[stage]} = lagrangian.hessian();
+    const SecondJet<double, d> lagrangian = lagrangian_of<d, Which>(system, arguments, stage, lambda, z, place, out);
+    const Matrix<double, d, d> whole = lagrangian.hessian();
+    for (int i = 0; i < d * d; ++i) place_second<Which>(out.hessian[stage][i], whole.data()[i]);
   }
 
   ControlTask<Sys> task_;
@@ -459,6 +513,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   TranscriptionSizes sizes_;
   Standing now_;
   Standing tried_;
+  bool has_tried_ = false;  // since it stands there
   mutable std::vector<double> condition_rows_;
   mutable std::vector<double> condition_hessian_;
 };

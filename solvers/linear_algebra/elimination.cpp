@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <set>
 
 namespace lagroid {
@@ -122,6 +123,49 @@ void Elimination::solve(double* b) const {
     double sum = b[pivot->unknown];
     for (int a = 0; a < pivot->count; ++a) sum -= row[a] * b[others[a]];
     b[pivot->unknown] = sum * v[pivot->values];
+  }
+}
+
+namespace {
+
+/// y -= a x.
+void subtract(double a, const double* x, double* y, int sides) {
+  for (int k = 0; k < sides; ++k) y[k] -= a * x[k];
+}
+
+}  // namespace
+
+void Elimination::solve(double* b, int sides) const {
+  const double* const v = values_.data();
+  const auto of = [&](int unknown) { return b + std::ptrdiff_t(unknown) * sides; };
+  for (const Pivot& pivot : pivots_) {
+    const double* const column = v + pivot.values + 1;
+    const int* const others = others_.data() + pivot.others;
+    for (int a = 0; a < pivot.count; ++a) subtract(column[a], of(pivot.unknown), of(others[a]), sides);
+  }
+  for (auto pivot = pivots_.rbegin(); pivot != pivots_.rend(); ++pivot) {
+    const double* const row = v + pivot->values + 1 + pivot->count;
+    const int* const others = others_.data() + pivot->others;
+    double* const mine = of(pivot->unknown);
+    for (int a = 0; a < pivot->count; ++a) subtract(row[a], of(others[a]), mine, sides);
+    for (int k = 0; k < sides; ++k) mine[k] *= v[pivot->values];
+  }
+}
+
+void Elimination::solve_transposed(double* b, int sides) const {
+  const double* const v = values_.data();
+  const auto of = [&](int unknown) { return b + std::ptrdiff_t(unknown) * sides; };
+  for (const Pivot& pivot : pivots_) {
+    const double* const row = v + pivot.values + 1 + pivot.count;
+    const int* const others = others_.data() + pivot.others;
+    double* const mine = of(pivot.unknown);
+    for (int k = 0; k < sides; ++k) mine[k] *= v[pivot.values];
+    for (int a = 0; a < pivot.count; ++a) subtract(row[a], mine, of(others[a]), sides);
+  }
+  for (auto pivot = pivots_.rbegin(); pivot != pivots_.rend(); ++pivot) {
+    const double* const column = v + pivot->values + 1;
+    const int* const others = others_.data() + pivot->others;
+    for (int a = 0; a < pivot->count; ++a) subtract(column[a], of(others[a]), of(pivot->unknown), sides);
   }
 }
 

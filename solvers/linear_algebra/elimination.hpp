@@ -42,6 +42,10 @@ class Elimination {
   std::vector<int> leave_out_dependent();
   /// b <- the solution.
   void solve(double* b) const;
+  /// The same of several right sides, for each unknown `sides` numbers one after another.
+  void solve(double* b, int sides) const;
+  /// Of the transposed equations.
+  void solve_transposed(double* b, int sides) const;
 
  private:
   struct Pivot {

@@ -7,16 +7,30 @@
 
 namespace lagroid {
 
-SymmetricFactorSized::SymmetricFactorSized(int size)
+namespace {
+
+constexpr int begin_of_pack(int i) { return i / RowPack::size * RowPack::size; }
+
+/// `row` from the pack of place i on, with zeros up to that place.
+void copy_after(const double* row, int i, int stride, double* out) {
+  for (int j = begin_of_pack(i); j < stride; ++j) out[j] = j > i ? row[j] : 0;
+}
+
+}  // namespace
+
+SymmetricFactorSized::SymmetricFactorSized(int size, int row_length)
     : size_(size),
-      l_(std::size_t(size) * std::size_t(size)),
+      stride_(row_length),
+      rows_(std::size_t(size * stride_)),
       inverse_(std::size_t(size)),
       off_(std::size_t(size)),
       order_(std::size_t(size)),
-      permuted_(std::size_t(size)) {}
+      first_(std::size_t(stride_)),
+      second_(std::size_t(stride_)),
+      solved_(rows_) {}
 
-void SymmetricFactorSized::compute(const double* a) {
-  std::copy(a, a + l_.size(), l_.begin());
+void SymmetricFactorSized::compute(const double* a, int stride) {
+  for (int i = 0; i < size_; ++i) std::copy(a + i * stride, a + i * stride + size_, row(i));
   negative_ = 0;
   smallest_ = std::numeric_limits<double>::infinity();
   for (int i = 0; i < size_; ++i) order_[std::size_t(i)] = i;
@@ -28,11 +42,12 @@ void SymmetricFactorSized::compute(const double* a) {
 /// the rest of the matrix in the others.
 int SymmetricFactorSized::pivot(int k) {
   constexpr double growth = 0.6403882032022076;  // (1 + sqrt 17) / 8
-  const double diagonal = std::abs(row(k)[k]);
+  const double* here = row(k);
+  const double diagonal = std::abs(here[k]);
   int r = k;
   double below = 0;
   for (int i = k + 1; i < size_; ++i)
-    if (const double x = std::abs(row(i)[k]); x > below) {
+    if (const double x = std::abs(here[i]); x > below) {
       below = x;
       r = i;
     }
@@ -53,12 +68,12 @@ int SymmetricFactorSized::pivot(int k) {
 int SymmetricFactorSized::eliminate_one(int k) {
   const double inverse = 1 / note(row(k)[k]);
   inverse_[std::size_t(k)] = inverse;
-  const double* first = row(k);
+  const int begin = begin_of_pack(k);
+  copy_after(row(k), k, stride_, first_.data());
   for (int i = k + 1; i < size_; ++i) {
     double* here = row(i);
     const double factor = here[k] * inverse;
-    if (factor != 0)
-      for (int j = k + 1; j < size_; ++j) here[j] -= factor * first[j];
+    add_multiple(here + begin, -factor, first_.data() + begin, stride_ - begin);
     here[k] = factor;
   }
   return 1;
@@ -77,13 +92,19 @@ int SymmetricFactorSized::eliminate_two(int k) {
   inverse_[at] = c / determinant;
   inverse_[at + 1] = a / determinant;
   off_[at] = -b / determinant;
-  const double* first = row(k);
-  const double* second = row(k + 1);
+  const int begin = begin_of_pack(k + 1);
+  copy_after(row(k), k + 1, stride_, first_.data());
+  copy_after(row(k + 1), k + 1, stride_, second_.data());
   for (int i = k + 2; i < size_; ++i) {
     double* here = row(i);
     const double one = inverse_[at] * here[k] + off_[at] * here[k + 1];
     const double two = off_[at] * here[k] + inverse_[at + 1] * here[k + 1];
-    for (int j = k + 2; j < size_; ++j) here[j] -= one * first[j] + two * second[j];
+    for (int j = begin; j < stride_; j += RowPack::size) {
+      RowPack sum = RowPack::load(here + j);
+      sum -= one * RowPack::load(first_.data() + j);
+      sum -= two * RowPack::load(second_.data() + j);
+      sum.store(here + j);
+    }
     here[k] = one;
     here[k + 1] = two;
   }
@@ -101,34 +122,38 @@ double SymmetricFactorSized::note(double eigenvalue) {
 
 void SymmetricFactorSized::exchange(int i, int j) {
   if (i == j) return;
-  std::swap_ranges(row(i), row(i) + size_, row(j));
+  std::swap_ranges(row(i), row(i) + stride_, row(j));
   for (int k = 0; k < size_; ++k) std::swap(row(k)[i], row(k)[j]);
   std::swap(order_[std::size_t(i)], order_[std::size_t(j)]);
 }
 
-void SymmetricFactorSized::solve_in_place(double* b, int columns) const {
-  const int n = size_;
-  for (int column = 0; column < columns; ++column) {
-    double* x = permuted_.data();
-    for (int i = 0; i < n; ++i) x[i] = b[order_[std::size_t(i)] * columns + column];
-    for (int i = 1; i < n; ++i) {
-      const double* l = row(i);
-      double sum = x[i];
-      for (int j = 0; j < i; ++j) sum -= l[j] * x[j];
-      x[i] = sum;
+void SymmetricFactorSized::invert(double* out) const {
+  const auto solved = [&](int i) { return solved_.data() + i * stride_; };
+  std::fill(solved_.begin(), solved_.end(), 0.0);
+  for (int i = 0; i < size_; ++i) solved(i)[order_[std::size_t(i)]] = 1;
+  for (int i = 1; i < size_; ++i) subtract_combination(solved(i), row(i), 1, solved(0), i, stride_);
+  for (int k = 0; k < size_; ++k) {
+    const auto at = std::size_t(k);
+    const bool is_pair = off_[at] != 0;
+    for (int j = 0; j < stride_; j += RowPack::size) {
+      const RowPack first = RowPack::load(solved(k) + j);
+      RowPack here = inverse_[at] * first;
+      if (is_pair) {
+        const RowPack second = RowPack::load(solved(k + 1) + j);
+        here += off_[at] * second;
+        RowPack next = inverse_[at + 1] * second;
+        next += off_[at] * first;
+        next.store(solved(k + 1) + j);
+      }
+      here.store(solved(k) + j);
     }
-    double before = 0;  // x of the row above, before D^{-1} took it
-    for (int i = 0; i < n; ++i) {
-      const auto at = std::size_t(i);
-      const double here = x[i];
-      x[i] = inverse_[at] * here + (i + 1 < n ? off_[at] * x[i + 1] : 0) + (i > 0 ? off_[at - 1] * before : 0);
-      before = here;
-    }
-    for (int i = n - 1; i > 0; --i) {
-      const double* l = row(i);
-      for (int j = 0; j < i; ++j) x[j] -= l[j] * x[i];
-    }
-    for (int i = 0; i < n; ++i) b[order_[std::size_t(i)] * columns + column] = x[i];
+    k += is_pair;
+  }
+  for (int j = size_ - 2; j >= 0; --j)
+    subtract_combination(solved(j), row(j + 1) + j, stride_, solved(j + 1), size_ - 1 - j, stride_);
+  for (int i = 0; i < size_; ++i) {
+    double* row = out + order_[std::size_t(i)] * stride_;
+    for (int j = 0; j < stride_; j += RowPack::size) RowPack::load(solved(i) + j).store(row + j);
   }
 }
 

@@ -13,14 +13,26 @@
 ///     const Eigen::MatrixXd back = step.backward(gradients);
 ///
 /// `factor` returns whether all numbers are finite and E_z is regular ([G] Def. 3.5). A step in closed form has no
-/// equations. Nothing throws. Source: implicit function theorem; the adjoint is that of the discrete map itself.
+/// equations; one of many unknowns, each coupled to few, is a SparseStep (sparse/sparse_step.hpp). Nothing throws.
+/// Source: implicit function theorem; the adjoint is that of the discrete map itself.
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 
 namespace lagroid {
 
-class LinearStep {
+/// The derivative of a step, as its matrix acts and as its transpose does.
+class StepDerivative {
+ public:
+  virtual ~StepDerivative() = default;
+
+  /// dx' of directions dx: states, and below them parameters, which a step leaves as they are.
+  virtual Eigen::MatrixXd forward(const Eigen::MatrixXd& directions) const = 0;
+  /// The gradients by x of functions of x', given those by x'.
+  virtual Eigen::MatrixXd backward(const Eigen::MatrixXd& gradients) const = 0;
+};
+
+class LinearStep final : public StepDerivative {
  public:
   LinearStep(int equations, int states, int parameters);
 
@@ -32,10 +44,8 @@ class LinearStep {
   /// To be called when the four have been filled in.
   bool factor();
 
-  /// dx' of directions dx: states, and below them parameters, which a step leaves as they are.
-  Eigen::MatrixXd forward(const Eigen::MatrixXd& directions) const;
-  /// The gradients by x of functions of x', given those by x'.
-  Eigen::MatrixXd backward(const Eigen::MatrixXd& gradients) const;
+  Eigen::MatrixXd forward(const Eigen::MatrixXd& directions) const override;
+  Eigen::MatrixXd backward(const Eigen::MatrixXd& gradients) const override;
 
  private:
   Eigen::VectorXd row_scale_;

@@ -43,7 +43,7 @@ class LinearisedMotion {
   /// equations are singular.
   virtual bool linearise() = 0;
   virtual int stages() const = 0;
-  virtual const LinearStep& stage(int k) const = 0;
+  virtual const StepDerivative& stage(int k) const = 0;
   /// What is observed, at the present node.
   virtual NodeValues observe() const = 0;
 

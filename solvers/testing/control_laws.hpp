@@ -16,9 +16,12 @@
 #include <lagroid/solvers/control/transcription.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::laws {
@@ -66,22 +69,64 @@ inline std::vector<double> stage_part(const TranscriptionSizes& sizes, const Tra
   return x;
 }
 
-/// The first and second derivative of f at 0 by central differences, extrapolated.
+/// The first and second derivative of f at 0.
 struct Differences {
   double first;
   double second;
 };
-template <class F> Differences differences(const F& f, double h) {
-  const double middle = f(0);
-  const auto at = [&](double e) -> Differences {
-    const double forward = f(e);
-    const double backward = f(-e);
-    return {(forward - backward) / (2 * e), (forward - 2 * middle + backward) / (e * e)};
+
+/// How far apart the values stand that differences are of. Where f bends sharply only close ones tell, where it is flat
+/// round-off spares far ones.
+constexpr std::array<double, 5> rungs{8e-3, 4e-3, 2e-3, 1e-3, 5e-4};
+
+/// Central differences at all rungs extrapolated to none, by Ridders: of the table's entries the one that is nearest to
+/// those it was made of. f(i) is the value at rungs[i - 1], f(-i) the one opposite, f(0) that in the middle.
+template <class F> Differences differences(const F& f) {
+  const auto extrapolated = [](const auto& at) {
+    std::array<double, rungs.size()> row{};
+    double best = at(0);
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < rungs.size(); ++i) {
+      double before = row[0];  // of the row above, in the column before
+      row[0] = at(i);
+      double power = 1;
+      for (std::size_t j = 1; j <= i; ++j) {
+        power *= 4;
+        const double here = row[j - 1] + (row[j - 1] - before) / (power - 1);
+        const double error = std::max(std::abs(here - row[j - 1]), std::abs(here - before));
+        before = std::exchange(row[j], here);
+        if (error < least) {
+          least = error;
+          best = here;
+        }
+      }
+    }
+    return best;
   };
-  const Differences coarse = at(2 * h);
-  const Differences fine = at(h);
-  return {(4 * fine.first - coarse.first) / 3, (4 * fine.second - coarse.second) / 3};
+  const auto rung = [](std::size_t i) { return int(i) + 1; };
+  const auto first = [&](std::size_t i) { return (f(rung(i)) - f(-rung(i))) / (2 * rungs[i]); };
+  const auto second = [&](std::size_t i) { return (f(rung(i)) - 2 * f(0) + f(-rung(i))) / (rungs[i] * rungs[i]); };
+  return {extrapolated(first), extrapolated(second)};
 }
+
+/// A trajectory's values along a displacement, at every rung and in the middle.
+class ValuesAlong {
+ public:
+  ValuesAlong(Transcription& subject, const TrajectoryDisplacement& by) {
+    for (int i = -last; i <= last; ++i) {
+      subject.try_displacement(by, i == 0 ? 0 : std::copysign(rungs[std::size_t(std::abs(i) - 1)], i));
+      subject.values(at_.emplace_back(subject.sizes()));
+    }
+  }
+  /// Of a number that `value` takes from the values.
+  template <class Value> Differences differences(const Value& value) const {
+    return detail::differences([&](int i) { return value(at_[std::size_t(last + i)]); });
+  }
+
+ private:
+  static constexpr int last = int(rungs.size());
+  std::vector<StageValues> at_;
+};
 
 /// l + <lambda, phi> + <z, gamma> of one stage.
 inline double stage_lagrangian(const TranscriptionSizes& sizes, const StageValues& at, const StageRows& lambda,
@@ -103,7 +148,6 @@ inline LawReport transcription_laws(Transcription& subject, int samples = 5, std
   detail::randomise(lambda, generator, -1, 1);
   detail::randomise(z, generator, 0, 1);
   StageDerivatives derivatives(sizes);
-  StageValues tried(sizes);
   subject.derivatives(lambda, z, derivatives);
   const int d = sizes.variables();
   double cost = 0;
@@ -113,15 +157,7 @@ inline LawReport transcription_laws(Transcription& subject, int samples = 5, std
   double symmetry = 0;
   for (int sample = 0; sample < samples; ++sample) {
     const TrajectoryDisplacement by = detail::random_displacement(subject, generator);
-    const auto along = [&](const auto& value) {
-      return detail::differences(
-          [&](double e) {
-            subject.try_displacement(by, e);
-            subject.values(tried);
-            return value();
-          },
-          1e-3);
-    };
+    const detail::ValuesAlong along(subject, by);
     for (long k = 0; k < sizes.stages; ++k) {
       const std::vector<double> x = detail::stage_part(sizes, by, k);
       const auto slope = [&](const double* row) {
@@ -130,13 +166,16 @@ inline LawReport transcription_laws(Transcription& subject, int samples = 5, std
         return sum;
       };
       const auto defect = [](double found, double wanted) { return std::abs(found - wanted) / (1 + std::abs(wanted)); };
-      cost = std::max(cost, defect(slope(derivatives.gradient[k]), along([&] { return tried.cost[k][0]; }).first));
+      cost = std::max(cost, defect(slope(derivatives.gradient[k]),
+                                   along.differences([&](const StageValues& at) { return at.cost[k][0]; }).first));
       for (int i = 0; i < sizes.equalities_of(k); ++i)
-        equality = std::max(equality, defect(slope(derivatives.equality[k] + i * d),
-                                             along([&] { return tried.equality[k][i]; }).first));
+        equality = std::max(equality,
+                            defect(slope(derivatives.equality[k] + i * d),
+                                   along.differences([&](const StageValues& at) { return at.equality[k][i]; }).first));
       for (int i = 0; i < sizes.inequality; ++i)
-        inequality = std::max(inequality, defect(slope(derivatives.inequality[k] + i * d),
-                                                 along([&] { return tried.inequality[k][i]; }).first));
+        inequality = std::max(
+            inequality, defect(slope(derivatives.inequality[k] + i * d),
+                               along.differences([&](const StageValues& at) { return at.inequality[k][i]; }).first));
       double curvature = 0;
       for (int q = 0; q < d; ++q) {
         curvature += x[std::size_t(q)] * slope(derivatives.hessian[k] + q * d);
@@ -144,8 +183,8 @@ inline LawReport transcription_laws(Transcription& subject, int samples = 5, std
           symmetry =
               std::max(symmetry, std::abs(derivatives.hessian[k][q * d + r] - derivatives.hessian[k][r * d + q]));
       }
-      const auto lagrangian = [&] { return detail::stage_lagrangian(sizes, tried, lambda, z, k); };
-      hessian = std::max(hessian, defect(curvature, along(lagrangian).second));
+      const auto lagrangian = [&](const StageValues& at) { return detail::stage_lagrangian(sizes, at, lambda, z, k); };
+      hessian = std::max(hessian, defect(curvature, along.differences(lagrangian).second));
     }
   }
   const int tested = samples * int(sizes.stages);
@@ -170,14 +209,12 @@ inline LawReport optimality_laws(Transcription& subject, const StageRows& lambda
   double stationarity = 0;
   for (int sample = 0; sample < samples; ++sample) {
     const TrajectoryDisplacement by = detail::random_displacement(subject, generator);
-    const auto lagrangian = [&](double e) {
-      subject.try_displacement(by, e);
-      subject.values(tried);
+    const auto lagrangian = [&](const StageValues& at) {
       double sum = 0;
-      for (long k = 0; k < sizes.stages; ++k) sum += detail::stage_lagrangian(sizes, tried, lambda, z, k);
+      for (long k = 0; k < sizes.stages; ++k) sum += detail::stage_lagrangian(sizes, at, lambda, z, k);
       return sum;
     };
-    stationarity = std::max(stationarity, std::abs(detail::differences(lagrangian, 1e-3).first));
+    stationarity = std::max(stationarity, std::abs(detail::ValuesAlong(subject, by).differences(lagrangian).first));
   }
   TrajectoryDisplacement none(sizes);
   subject.try_displacement(none, 0);

@@ -24,8 +24,11 @@ template <class S> Vec values_of(const Vector<S, 3>& x) { return {value_of(x(0))
 /// Whether it is zero and stays so: what has a derivative does not.
 template <class S> bool stays_zero(const S& x) {
   bool varies = false;
-  if constexpr (!std::is_same_v<S, double>)
+  if constexpr (requires { x.mixed(); }) {
+    varies = !x.left().isZero(0) || !x.right().isZero(0) || !x.mixed().isZero(0);
+  } else if constexpr (!std::is_same_v<S, double>) {
     for (int i = 0; i < S::directions; ++i) varies = varies || x.tangent(i) != 0;
+  }
   return !varies && value_of(x) == 0;
 }
 template <class S, int Rows, int Columns> bool stays_zero(const Matrix<S, Rows, Columns>& x) {

@@ -1,6 +1,7 @@
 #include <lagroid/systems/multibody/model.hpp>
 
 #include <lagroid/core/derivatives/varied_directions.hpp>
+#include <lagroid/systems/multibody/control/second_number.hpp>
 #include <lagroid/systems/multibody/solver/memory.hpp>
 
 #include <algorithm>
@@ -108,5 +109,9 @@ template void BasicModel<VariedNumber>::react(const BasicConfiguration<VariedNum
                                               std::vector<Vector<VariedNumber, 3>>&, std::vector<RowSize>&) const;
 template void BasicModel<VariedNumber>::find_gradients(const BasicSceneArrow<VariedNumber>&, const Island&,
                                                        std::vector<Vector<VariedNumber, 3>>&) const;
+template void BasicModel<SecondNumber>::place_arms(BasicConfiguration<SecondNumber>&, const Range&, const Range&) const;
+template void BasicModel<SecondNumber>::act(const BasicConfiguration<SecondNumber>&, BasicLoads<SecondNumber>&) const;
+template void BasicModel<SecondNumber>::react(const BasicConfiguration<SecondNumber>&, const Island&,
+                                              std::vector<Vector<SecondNumber, 3>>&, std::vector<RowSize>&) const;
 
 }  // namespace lagroid::multibody

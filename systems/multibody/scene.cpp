@@ -1,6 +1,7 @@
 #include <lagroid/systems/multibody/scene.hpp>
 
 #include <lagroid/core/derivatives/varied_directions.hpp>
+#include <lagroid/systems/multibody/control/second_number.hpp>
 
 namespace lagroid::multibody {
 
@@ -71,5 +72,6 @@ template <class S> void BasicScene<S>::gyroscopic_force(const Body& body, const 
 
 template class BasicScene<double>;
 template class BasicScene<VariedNumber>;
+template class BasicScene<SecondNumber>;
 
 }  // namespace lagroid::multibody

@@ -217,6 +217,28 @@ TEST_F(Control, MistakesOfPhasesAndEndsAreOneLine) {
   refused("keep_out", "boundary.free_end=[\"r1\"]", "an attitude is given by all three of its numbers");
 }
 
+TEST_F(Control, ScenesOfBodiesSayWhatIsWrongWithThem) {
+  const auto refused = [&](const std::string& set, const std::string& words) {
+    const Outcome r = run(scene("arm_of_bodies") + " --set '" + set + "'");
+    EXPECT_EQ(r.code, 2) << set << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << set << ": " << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  };
+  refused("actuator.0.effect=\"engine\"", "there is no effect \"engine\" to be controlled; names are shoulder, elbow");
+  refused("actuator.0.bounds=[1.0, -1.0]", "1 is not below -1");
+  refused("actuator.0.bound=[-1.0, 1.0]", "unknown");
+  refused("end.0.body=\"hand\"", "there is no body \"hand\"; there are upper, fore");
+  refused("end.0.attitude=[0.0, 0.0, 1.0]", "does not turn in space: give its angle");
+  refused("end.0.position=[0.0, 0.0, 1.0]", "give 2 numbers of this body");
+  refused("end.0.position=[5.0, 0.0]", "do not reach the end");
+  refused("end.0.velocity=[0.0, 0.0]", "leave it out of a body at_rest");
+  refused("end.0.at=[0.1, 0.0, 0.0]", "give position, or leave it out");
+  refused("constraint.0.centre=[1.0, 0.0, 0.0]", "is inside at the start");
+  refused("constraint.0.kind=\"cone\"", "sphere");
+  refused("horizon.free=true", "give it a weight");
+  refused("effect.0.rate=1.0", "follow time");
+}
+
 TEST_F(Control, IpoptFindsTheSameInTheSameFiles) {
   const std::string set = " --json --set horizon.stages=40 --set solver.starts=2";
   const std::string out = (folder_ / "by_ipopt").string();

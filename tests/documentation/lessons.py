@@ -102,7 +102,7 @@ class Lessons(unittest.TestCase):
         except (ImportError, FileNotFoundError) as missing:
             self.skipTest(str(missing))
         self.assertEqual(json.loads(done.stdout), {"scene": 'a = "é"', "settings": [["time.step", "0.1"]], "first": "",
-                                                  "second": "runge-kutta", "fair": False})
+                                                  "second": "runge-kutta", "fair": False, "views": []})
 
 
 class BrokenLessons(unittest.TestCase):

@@ -46,6 +46,13 @@ void expect_solves(Filled f) {
   ASSERT_TRUE(f.sparse.factorise());
   f.sparse.solve(x.data());
   EXPECT_LT((f.dense * x - b).norm(), 1e-13 * b.norm());
+  // Several sides at once, and the transposed equations.
+  const Eigen::MatrixXd sides = Eigen::MatrixXd::Random(f.dense.rows(), 3);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> y = sides, z = sides;
+  f.sparse.solve(y.data(), 3);
+  EXPECT_LT((f.dense * y - sides).norm(), 1e-13 * sides.norm());
+  f.sparse.solve_transposed(z.data(), 3);
+  EXPECT_LT((f.dense.transpose() * z - sides).norm(), 1e-13 * sides.norm());
 }
 
 TEST(Elimination, SolvesWhatDenseEliminationSolves) {

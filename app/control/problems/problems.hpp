@@ -20,5 +20,6 @@ const ControlProblem& rigid_body_problem();
 const ControlProblem& two_link_arm_problem();
 const ControlProblem& falling_cat_problem();
 const ControlProblem& rolled_ball_problem();
+const ControlProblem& controlled_bodies();
 
 }  // namespace lagroid::app

@@ -49,7 +49,6 @@ InteriorPoint::Merit InteriorPoint::merit(const StageValues& values, const Stage
 
 /// The largest part of the residual of the barrier problem's equations, relative to the multipliers' mean size.
 double InteriorPoint::scaled_error(double barrier) {
-  lagrangian_gradient(transcription_, derivatives_, costates_, multipliers_, gradient_);
   double violation = 0;
   double complementarity = 0;
   double sum = 0;
@@ -71,7 +70,10 @@ double InteriorPoint::scaled_error(double barrier) {
   return std::max({largest_entry(gradient_) / scale, violation, complementarity / scale_of_bounds});
 }
 
-void InteriorPoint::evaluate() { transcription_.derivatives(costates_, multipliers_, derivatives_); }
+void InteriorPoint::evaluate() {
+  transcription_.derivatives(costates_, multipliers_, derivatives_);
+  lagrangian_gradient(transcription_, derivatives_, costates_, multipliers_, gradient_);
+}
 
 // ---- the start
 
@@ -131,7 +133,7 @@ void InteriorPoint::least_squares_costates() {
   set_all(dual_, 0);
   kkt_.factor(1, dual_);
   ++report_.factorisations;
-  lagrangian_gradient(transcription_, derivatives_, costates_, multipliers_, right_.primal);
+  right_.primal = gradient_;
   negate(right_.primal);
   set_all(right_.multipliers, 0);
   kkt_.solve(right_, step_);
@@ -143,8 +145,10 @@ void InteriorPoint::least_squares_costates() {
 /// The right-hand side of a Newton step whose residuals of equalities and of gamma + s are these.
 void InteriorPoint::newton_side(const StageRows& equality, const StageRows& gap) {
   for (long k = 0; k < sizes_.stages; ++k)
-    for (int i = 0; i < sizes_.inequality; ++i) weights_[k][i] = barrier_ / slacks_[k][i] + sigma_[k][i] * gap[k][i];
-  lagrangian_gradient(transcription_, derivatives_, costates_, weights_, right_.primal);
+    for (int i = 0; i < sizes_.inequality; ++i)
+      weights_[k][i] = barrier_ / slacks_[k][i] + sigma_[k][i] * gap[k][i] - multipliers_[k][i];
+  right_.primal = gradient_;
+  add_inequality_gradient(transcription_, derivatives_, weights_, right_.primal);
   negate(right_.primal);
   for (std::size_t i = 0; i < equality.numbers().size(); ++i) right_.multipliers.numbers()[i] = -equality.numbers()[i];
 }
@@ -152,6 +156,10 @@ void InteriorPoint::newton_side(const StageRows& equality, const StageRows& gap)
 /// dgamma along the displacement in `step_`.
 double InteriorPoint::change_of_inequality(long stage, int i) const {
   const int n = sizes_.node;
+  if (const int bound = i - sizes_.general_inequality(); bound >= 0) {
+    const ControlBound& at = sizes_.phases[std::size_t(sizes_.phase_of(stage))].bounds[std::size_t(bound)];
+    return at.sign * step_.primal.controls[stage][at.control];
+  }
   const double* row = derivatives_.inequality[stage] + i * sizes_.variables();
   double change = row[sizes_.at_duration()] * step_.primal.durations[std::size_t(sizes_.phase_of(stage))];
   for (int q = 0; q < n; ++q)

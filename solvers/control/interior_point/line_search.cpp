@@ -138,8 +138,12 @@ InteriorPoint::Outcome InteriorPoint::line_search() {
   const double slope = this->slope();
   const double most = fraction_to_boundary(slacks_, slack_step_);
 
-  // Near the solution only round-off is left to compare.
+  // Near the solution only round-off is left to compare. Elsewhere constraints that are dependent allow no step.
   if (largest_entry(step_.primal) < 10 * epsilon) {
+    if (largest_violation(sizes_, values_) > options_.tolerance) {
+      add_to_filter(now);
+      return Outcome::stuck;
+    }
     try_step(most);
     take(most);
     return Outcome::advanced;

@@ -40,6 +40,13 @@ struct OneSidedElastic {
   double value(double nu) const { return e - nu * (std::log(e) + std::log(s)); }
 };
 
+/// So many iterations that lower the smoothed violation by no more than this part of the violation are enough of one
+/// smoothing: what they converge to linearly is not worth them.
+constexpr int patience = 10;
+constexpr double worth = 1e-2;
+/// The least smoothing, of the largest violation: what is stationary then is so of the violation itself.
+constexpr double least_smoothing = 1e-5;
+
 }  // namespace
 
 double InteriorPoint::smoothed_violation(const StageValues& at, double nu) const {
@@ -66,6 +73,15 @@ bool InteriorPoint::restore() {
   set_all(multipliers_, 0.5);
   last_shift_ = 0;
   bool found = false;
+  int age = 0;  // iterations with this smoothing
+  double before = 0;
+  // False where that was the least.
+  const auto smooth_less = [&] {
+    if (smoothing <= std::max(1e-7, least_smoothing * largest_violation(sizes_, values_))) return false;
+    smoothing *= 0.1;
+    age = 0;
+    return true;
+  };
   while (report_.iterations < most_iterations_) {
     ++report_.iterations;
     evaluate();
@@ -90,17 +106,18 @@ bool InteriorPoint::restore() {
     set_all(derivatives_.gradient, 0);
     lagrangian_gradient(transcription_, derivatives_, equality_, weights_, gradient_);
     const double steepest = largest_entry(gradient_);
-    if (steepest <= std::clamp(smoothing, 1e-6, 1e-2)) {
-      if (smoothing <= 1e-7) break;
-      smoothing *= 0.1;
+    const double now = smoothed_violation(values_, smoothing);
+    const bool is_slow = age > 0 && age % patience == 0 && before - now <= worth * merit(values_, slacks_).violation;
+    if (is_slow || steepest <= std::clamp(smoothing, 1e-6, 1e-2)) {
+      if (!smooth_less()) break;
       continue;
     }
+    if (age++ % patience == 0) before = now;
     if (!factor()) break;
     lagrangian_gradient(transcription_, derivatives_, costates_, weights_, right_.primal);
     negate(right_.primal);
     kkt_.solve(right_, step_);
 
-    const double now = smoothed_violation(values_, smoothing);
     const double slope = dot(gradient_, step_.primal);
     double fraction = 1;
     bool lower = false;
@@ -111,8 +128,7 @@ bool InteriorPoint::restore() {
               now + 1e-4 * fraction * slope + 10 * std::numeric_limits<double>::epsilon() * std::abs(now);
     }
     if (!lower) {
-      if (smoothing <= 1e-7) break;
-      smoothing *= 0.1;
+      if (!smooth_less()) break;
       continue;
     }
     // Multipliers stay within their bounds, |lambda| < 1 and 0 < z < 1.

@@ -17,6 +17,7 @@ constexpr double sure = 1e4;  // z / s of an inequality that is active without d
 TranscriptionSizes padded(TranscriptionSizes sizes) {
   sizes.equality += sizes.inequality;
   sizes.inequality = 0;
+  for (TranscriptionPhase& phase : sizes.phases) phase.bounds.clear();
   return sizes;
 }
 

@@ -1,7 +1,9 @@
+#include <lagroid/core/scalars/pack.hpp>
 #include <lagroid/solvers/control/optimality/kkt_residual.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace lagroid {
 
@@ -10,6 +12,57 @@ namespace {
 /// The larger; infinite where x is no number.
 double larger(double most, double x) { return std::isnan(x) ? HUGE_VAL : std::max(most, x); }
 
+/// A row of derivatives over the variables of a stage, and what it is multiplied by.
+struct WeightedRow {
+  double weight;
+  const double* row;
+};
+
+/// out += sum_i weight_i row_i, of so many variables from the first one on.
+template <class RowAt> void add_rows(const RowAt& row_at, int rows, int first, int variables, double* out) {
+  const auto add_few = [&]<int Count>(int q) {
+    auto sum = Pack<double, Count>::load(out + q);
+    for (int i = 0; i < rows; ++i) {
+      const WeightedRow each = row_at(i);
+      sum = sum + each.weight * Pack<double, Count>::load(each.row + first + q);
+    }
+    sum.store(out + q);
+  };
+  int q = 0;
+  for (; q + 4 <= variables; q += 4) add_few.template operator()<4>(q);
+  for (; q < variables; ++q) add_few.template operator()<1>(q);
+}
+/// The same of a whole stage. The displacements of its two nodes stand after one another.
+template <class RowAt>
+void add_rows_of_stage(const TranscriptionSizes& sizes, const RowAt& row_at, int rows, long stage, std::size_t phase,
+                       TrajectoryDisplacement& out) {
+  add_rows(row_at, rows, sizes.at_source, 2 * sizes.node, out.nodes[stage]);
+  add_rows(row_at, rows, sizes.at_control(), sizes.control, out.controls[stage]);
+  add_rows(row_at, rows, sizes.at_duration(), 1, &out.durations[phase]);
+}
+void add_bounds(const TranscriptionSizes& sizes, const TranscriptionPhase& phase, const double* weights, double* out) {
+  const int general = sizes.general_inequality();
+  for (std::size_t i = 0; i < phase.bounds.size(); ++i)
+    out[phase.bounds[i].control] += weights[general + int(i)] * phase.bounds[i].sign;
+}
+
+void keep_fixed(const Transcription& transcription, TrajectoryDisplacement& out) {
+  const TranscriptionSizes& sizes = transcription.sizes();
+  long k = 0;
+  for (std::size_t p = 0; p < sizes.phases.size(); ++p) {
+    const TranscriptionPhase& phase = sizes.phases[p];
+    if (!phase.duration_is_free) out.durations[p] = 0;
+    for (std::size_t i = 0; i < phase.control_is_fixed.size(); ++i)
+      if (phase.control_is_fixed[i])
+        for (long stage = k; stage < phase.end; ++stage) out.controls[stage][i] = 0;
+    k = phase.end;
+  }
+  for (int i = 0; i < sizes.node; ++i) {
+    if (!transcription.free_start()[std::size_t(i)]) out.nodes[0][i] = 0;
+    if (!transcription.free_end()[std::size_t(i)]) out.nodes[sizes.stages][i] = 0;
+  }
+}
+
 }  // namespace
 
 double KktResidual::largest() const { return std::max({stationarity, violation, complementarity, sign}); }
@@ -17,36 +70,39 @@ double KktResidual::largest() const { return std::max({stationarity, violation, 
 void lagrangian_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
                          const StageRows& costates, const StageRows& weights, TrajectoryDisplacement& out) {
   const TranscriptionSizes& sizes = transcription.sizes();
-  const int n = sizes.node;
   const int d = sizes.variables();
   set_all(out.nodes, 0);
+  set_all(out.controls, 0);
   std::fill(out.durations.begin(), out.durations.end(), 0.0);
-  std::size_t phase = 0;
-  for (long k = 0; k < sizes.stages; ++k) {
-    if (k == sizes.phases[phase].end) ++phase;
-    const int equalities = sizes.equalities_of(k);
-    const auto component = [&](int q) {
-      double sum = derivatives.gradient[k][q];
-      for (int i = 0; i < equalities; ++i) sum += costates[k][i] * derivatives.equality[k][i * d + q];
-      for (int i = 0; i < sizes.inequality; ++i) sum += weights[k][i] * derivatives.inequality[k][i * d + q];
-      return sum;
-    };
-    for (int i = 0; i < n; ++i) {
-      out.nodes[k][i] += component(i);
-      out.nodes[k + 1][i] += component(n + i);
-    }
-    for (int i = 0; i < sizes.control; ++i) out.controls[k][i] = component(sizes.at_control() + i);
-    const std::vector<bool>& fixed = sizes.phases[phase].control_is_fixed;
-    for (std::size_t i = 0; i < fixed.size(); ++i)
-      if (fixed[i]) out.controls[k][i] = 0;
-    out.durations[phase] += component(sizes.at_duration());
-  }
-  for (int i = 0; i < n; ++i) {
-    if (!transcription.free_start()[std::size_t(i)]) out.nodes[0][i] = 0;
-    if (!transcription.free_end()[std::size_t(i)]) out.nodes[sizes.stages][i] = 0;
-  }
+  long k = 0;
   for (std::size_t p = 0; p < sizes.phases.size(); ++p)
-    if (!sizes.phases[p].duration_is_free) out.durations[p] = 0;
+    for (; k < sizes.phases[p].end; ++k) {
+      const int equalities = sizes.equalities_of(k);
+      const auto row_at = [&](int i) -> WeightedRow {
+        if (i == 0) return {1, derivatives.gradient[k]};
+        --i;
+        if (i < equalities) return {costates[k][i], derivatives.equality[k] + i * d};
+        i -= equalities;
+        return {weights[k][i], derivatives.inequality[k] + i * d};
+      };
+      add_rows_of_stage(sizes, row_at, 1 + equalities + sizes.general_inequality(), k, p, out);
+      add_bounds(sizes, sizes.phases[p], weights[k], out.controls[k]);
+    }
+  keep_fixed(transcription, out);
+}
+
+void add_inequality_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
+                             const StageRows& weights, TrajectoryDisplacement& out) {
+  const TranscriptionSizes& sizes = transcription.sizes();
+  const int d = sizes.variables();
+  long k = 0;
+  for (std::size_t p = 0; p < sizes.phases.size(); ++p)
+    for (; k < sizes.phases[p].end; ++k) {
+      const auto row_at = [&](int i) -> WeightedRow { return {weights[k][i], derivatives.inequality[k] + i * d}; };
+      add_rows_of_stage(sizes, row_at, sizes.general_inequality(), k, p, out);
+      add_bounds(sizes, sizes.phases[p], weights[k], out.controls[k]);
+    }
+  keep_fixed(transcription, out);
 }
 
 double largest_violation(const TranscriptionSizes& sizes, const StageValues& values) {

@@ -27,6 +27,10 @@ struct KktResidual {
 void lagrangian_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
                          const StageRows& costates, const StageRows& weights, TrajectoryDisplacement& out);
 
+/// Adds d<weights, gamma>, likewise.
+void add_inequality_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
+                             const StageRows& weights, TrajectoryDisplacement& out);
+
 /// The largest of |phi| and of gamma's positive part.
 double largest_violation(const TranscriptionSizes& sizes, const StageValues& values);
 

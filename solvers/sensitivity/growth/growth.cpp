@@ -2,9 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 namespace lagroid {
+
+namespace {
+
+/// For each component the number of its class, of those that act upon each other, directly or through others: the
+/// strongly connected components of the graph of the entries that are not zero (Tarjan 1972).
+std::vector<int> classes_of(const Eigen::MatrixXd& matrix) {
+  const auto count = std::size_t(matrix.cols());
+  std::vector<int> found(count, -1), lowest(count, 0), out(count, -1);
+  std::vector<std::size_t> open;
+  int visited = 0, classes = 0;
+  const std::function<void(std::size_t)> visit = [&](std::size_t i) {
+    found[i] = lowest[i] = visited++;
+    open.push_back(i);
+    for (std::size_t j = 0; j < count; ++j) {
+      if (matrix(Eigen::Index(j), Eigen::Index(i)) == 0 || out[j] >= 0) continue;
+      if (found[j] < 0) visit(j);
+      lowest[i] = std::min(lowest[i], lowest[j]);
+    }
+    if (lowest[i] != found[i]) return;
+    for (bool is_last = false; !is_last; open.pop_back()) {
+      out[open.back()] = classes;
+      is_last = open.back() == i;
+    }
+    ++classes;
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    if (found[i] < 0) visit(i);
+  return out;
+}
+
+}  // namespace
 
 void OwnUnits::see(const Eigen::MatrixXd& matrix) {
   if (!matrix.allFinite()) return;
@@ -18,20 +51,19 @@ Eigen::VectorXd OwnUnits::of(Eigen::Index components) const {
   // What acts one way alone acts back by so little that all steps together count once.
   Eigen::MatrixXd coupling = sum_ / double(seen_);
   const double back = 1 / (double(asked_) * double(asked_));
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> reaches = sum_.array() > 0;
-  for (Eigen::Index k = 0; k < components; ++k)
-    for (Eigen::Index i = 0; i < components; ++i)
-      for (Eigen::Index j = 0; j < components; ++j) reaches(i, j) = reaches(i, j) || (reaches(i, k) && reaches(k, j));
+  const std::vector<int> classes = classes_of(sum_);
   for (Eigen::Index i = 0; i < components; ++i)
     for (Eigen::Index j = 0; j < components; ++j)
-      if (sum_(j, i) > 0 && !reaches(i, j)) coupling(i, j) += back * double(seen_) / sum_(j, i);
+      if (sum_(j, i) > 0 && classes[std::size_t(i)] != classes[std::size_t(j)])
+        coupling(i, j) += back * double(seen_) / sum_(j, i);
   coupling.diagonal().setZero();
+  const Eigen::MatrixXd rows = coupling.transpose();
   constexpr int most_sweeps = 200;
   constexpr double settled = 1e-3;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double change = 0;
     for (Eigen::Index i = 0; i < components; ++i) {
-      const double row = coupling.row(i).dot(units) / units(i);
+      const double row = rows.col(i).dot(units) / units(i);
       const double column = coupling.col(i).dot(units.cwiseInverse()) * units(i);
       const double factor = std::sqrt(row / column);
       if (!(factor > 0 && std::isfinite(factor))) continue;

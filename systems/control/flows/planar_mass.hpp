@@ -39,6 +39,7 @@ struct PlanarMass : ControlledFlow<PlanarMass, Pair<4>, 2, 2> {
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 2>& u) const {
     return running_cost_of(cost_of, u);
   }
+  bool has_inequalities() const { return largest_force > 0 || disk_radius > 0; }
   template <class S> Vector<S, 2> inequality(const PairArrow<S, 4>& g, const Vector<S, 2>& u, const S&) const {
     S force(-1.0);
     if (largest_force > 0) force = (u(0) * u(0) + u(1) * u(1)) * (1 / (largest_force * largest_force)) - 1.0;

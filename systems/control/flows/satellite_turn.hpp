@@ -52,6 +52,7 @@ struct SatelliteTurn : ControlledFlow<SatelliteTurn, Product<Action<SO3, Rotated
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 3>& u) const {
     return running_cost_of(cost_of, u);
   }
+  bool has_inequalities() const { return cone > 0; }
   template <class A, class S> Vector<S, 1> inequality(const A& g, const Vector<S, 3>&, const S&) const {
     using std::cos;
     if (!(cone > 0)) return Vector<S, 1>(S(-1.0));

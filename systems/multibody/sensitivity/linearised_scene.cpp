@@ -46,9 +46,11 @@ LinearisedScene::LinearisedScene(Multibody motion, std::vector<std::string> name
       names_(std::move(names)),
       numbers_(std::move(numbers)),
       sizes_(sizes_of(motion_)),
+      derivatives_(sizes_, numbers_, write),
       before_(motion_.state()),
-      linear_(stages ? stages->shares.size() : 1, LinearStep(sizes_.unknowns(), sizes_.states(), int(names_.size()))),
-      stages_(std::move(stages)) {
+      linear_(stages ? stages->shares.size() : 1),
+      stages_(std::move(stages)),
+      begin_(0, sizes_.states(), int(names_.size())) {
   if (names_.size() != numbers_.size()) throw std::invalid_argument("a name for each number");
   if (motion_.index() != 0) throw std::invalid_argument("derivatives are of a motion from its start on");
   if (before_.control) throw std::invalid_argument("controlled steps have no derivative here: take equal ones");
@@ -58,6 +60,11 @@ LinearisedScene::LinearisedScene(Multibody motion, std::vector<std::string> name
   for (int first = 0; first < parameters(); first += varied_at_once)
     scenes_.emplace_back(write(varied_from(numbers_, first)), motion_);
   find_start();
+}
+
+const StepDerivative& LinearisedScene::stage(int k) const {
+  if (begins_ && k == 0) return begin_;
+  return *linear_[std::size_t(begins_ ? k - 1 : k)];
 }
 
 void LinearisedScene::find_start() {
@@ -71,6 +78,8 @@ void LinearisedScene::find_start() {
                       "velocities not agree with them",
                       names_[std::size_t(k)]));
   }
+  begin_.end_by_start.leftCols(sizes_.states()).setIdentity();
+  begin_.end_by_start.rightCols(parameters()) = start_;
 }
 
 StepReport LinearisedScene::advance() {
@@ -79,6 +88,7 @@ StepReport LinearisedScene::advance() {
 }
 
 bool LinearisedScene::linearise() {
+  begins_ = before_.index == 0 && parameters() > 0;
   if (stages_) return linearise_stages();
   const SceneState& after = motion_.state();
   return linearise(
@@ -109,52 +119,35 @@ bool LinearisedScene::linearise_stages() {
   return regular;
 }
 
-bool LinearisedScene::linearise(const SolvedStep& solved, bool is_first, LinearStep& out) {
+bool LinearisedScene::linearise(const SolvedStep& solved, bool is_first, std::optional<SparseStep>& out) {
+  derivatives_.find({motion_, scenes_}, solved, out);
+  if (!out->factor()) return false;
+  if (is_first && parameters() > 0 && !sizes_.left_out.empty()) require_dependence(solved, *out);
+  return true;
+}
+
+void LinearisedScene::require_dependence(const SolvedStep& solved, const SparseStep& step) {
+  constexpr double noticed = 1e-6;
   const int unknowns = sizes_.unknowns(), states = sizes_.states();
-  // Of rows that depend on others, at the first step.
-  const auto left_out = is_first && parameters() > 0 ? Eigen::Index(sizes_.left_out.size()) : 0;
-  Eigen::MatrixXd left_by_unknowns(left_out, unknowns), left_by_start(left_out, states + parameters());
-  const auto put = [](const VariedNumbers& values, int direction, auto&& column) {
-    for (Eigen::Index i = 0; i < values.size(); ++i) column(i) = values(i).tangent(direction);
-  };
+  Eigen::MatrixXd left(Eigen::Index(sizes_.left_out.size()), unknowns + states + parameters());
   for (int first = 0; first < unknowns + states; first += varied_at_once) {
-    VariedScene& scene = scenes_.front();
-    scene.step(solved, sizes_, first);
-    for (int k = first; k < std::min(unknowns + states, first + varied_at_once); ++k) {
-      const bool unknown = k < unknowns;
-      const int column = unknown ? k : k - unknowns;
-      put(scene.equations(), k - first, (unknown ? out.equations_by_unknowns : out.equations_by_start).col(column));
-      put(scene.end(), k - first, (unknown ? out.end_by_unknowns : out.end_by_start).col(column));
-      if (left_out > 0) put(scene.left_out(), k - first, (unknown ? left_by_unknowns : left_by_start).col(column));
-    }
+    scenes_.front().step(solved, sizes_, first);
+    lagroid::detail::put_tangents(scenes_.front().left_out(), first, left.leftCols(unknowns + states));
   }
   for (int first = 0; first < parameters(); first += varied_at_once) {
     VariedScene& scene = scenes_[std::size_t(1 + first / varied_at_once)];
     scene.step(solved, sizes_, unknowns + states);
-    for (int k = first; k < std::min(parameters(), first + varied_at_once); ++k) {
-      put(scene.equations(), k - first, out.equations_by_start.col(states + k));
-      put(scene.end(), k - first, out.end_by_start.col(states + k));
-      if (left_out > 0) put(scene.left_out(), k - first, left_by_start.col(states + k));
-    }
+    lagroid::detail::put_tangents(scene.left_out(), first, left.rightCols(parameters()));
   }
-  if (is_first && parameters() > 0) {
-    out.equations_by_start.rightCols(parameters()) += out.equations_by_start.leftCols(states) * start_;
-    out.end_by_start.rightCols(parameters()) += out.end_by_start.leftCols(states) * start_;
-    left_by_start.rightCols(parameters()) += left_by_start.leftCols(states) * start_;
-    if (left_out > 0) require_dependence(left_by_unknowns, left_by_start.rightCols(parameters()), out);
-  }
-  return out.factor();
-}
-
-void LinearisedScene::require_dependence(const Eigen::MatrixXd& by_unknowns, const Eigen::MatrixXd& by_numbers,
-                                         const LinearStep& step) const {
-  constexpr double noticed = 1e-6;
-  const Eigen::MatrixXd unknowns =
-      -step.equations_by_unknowns.fullPivLu().solve(step.equations_by_start.rightCols(parameters()));
-  const Eigen::MatrixXd left = by_numbers + by_unknowns * unknowns;
-  const Eigen::MatrixXd terms = by_numbers.cwiseAbs() + by_unknowns.cwiseAbs() * unknowns.cwiseAbs();
+  Eigen::MatrixXd by(states + parameters(), parameters());
+  by << start_, Eigen::MatrixXd::Identity(parameters(), parameters());
+  Eigen::MatrixXd found = step.unknowns(by);
+  found.topRows(3 * sizes_.linear) -= by.topRows(3 * sizes_.linear);  // w, of v + w
+  const Eigen::MatrixXd by_numbers = left.rightCols(states + parameters()) * by;
+  const Eigen::MatrixXd change = by_numbers + left.leftCols(unknowns) * found;
+  const Eigen::MatrixXd terms = by_numbers.cwiseAbs() + left.leftCols(unknowns).cwiseAbs() * found.cwiseAbs();
   for (int k = 0; k < parameters(); ++k)
-    if ((left.col(k).cwiseAbs().array() > noticed * terms.col(k).maxCoeff()).any())
+    if ((change.col(k).cwiseAbs().array() > noticed * terms.col(k).maxCoeff()).any())
       throw WithoutDerivative(fmt::format(
           "there is no derivative by {}: equations of the joints that depend on others would not, with another one",
           names_[std::size_t(k)]));

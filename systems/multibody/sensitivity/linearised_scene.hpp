@@ -25,12 +25,11 @@
 
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
-#include <lagroid/systems/multibody/sensitivity/varied_scene.hpp>
+#include <lagroid/systems/multibody/sensitivity/scene_derivatives.hpp>
 
 #include <Eigen/Core>
 
 #include <deque>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,7 +39,7 @@ namespace lagroid::multibody {
 class LinearisedScene final : public LinearisedMotion {
  public:
   /// A scene as a function of its numbers.
-  using Write = std::function<WrittenScene(const std::vector<VariedNumber>& numbers)>;
+  using Write = WriteScene;
 
   /// Of a motion by composed steps: the same motion at its start by single ones, and the shares of its stages.
   struct Stages {
@@ -57,8 +56,9 @@ class LinearisedScene final : public LinearisedMotion {
   double time() const override { return motion_.time(); }
   StepReport advance() override;
   bool linearise() override;
-  int stages() const override { return int(linear_.size()); }
-  const LinearStep& stage(int k) const override { return linear_[std::size_t(k)]; }
+  /// Those of the step; before the first, what numbers do to the start.
+  int stages() const override { return int(linear_.size()) + (begins_ ? 1 : 0); }
+  const StepDerivative& stage(int k) const override;
   NodeValues observe() const override;
   void serialize(NumberArchive& archive) override;
 
@@ -66,25 +66,29 @@ class LinearisedScene final : public LinearisedMotion {
   Eigen::MatrixXd allowed_directions() const;
   /// The derivatives of the start, (v, mu), by the numbers.
   const Eigen::MatrixXd& start_by_numbers() const { return start_; }
+  /// How often the equations of a step are evaluated for its derivative: of a chain the same, however long it is.
+  int evaluations() const { return derivatives_.evaluations(); }
 
  private:
   void find_start();
-  /// Linearises a stage, or the whole of a step; the first of all has what numbers do to the start.
-  bool linearise(const SolvedStep& solved, bool is_first, LinearStep& out);
+  /// Linearises a stage, or the whole of a step.
+  bool linearise(const SolvedStep& solved, bool is_first, std::optional<SparseStep>& out);
   bool linearise_stages();
   /// Refuses numbers with which rows that depend on others no longer do.
-  void require_dependence(const Eigen::MatrixXd& by_unknowns, const Eigen::MatrixXd& by_numbers,
-                          const LinearStep& step) const;
+  void require_dependence(const SolvedStep& solved, const SparseStep& step);
 
   Multibody motion_;
   std::vector<std::string> names_;
   std::vector<double> numbers_;
   SceneSizes sizes_;
   mutable std::deque<VariedScene> scenes_;  ///< the first constant, each other varied by the next few numbers
-  SceneState before_;                       ///< the last step
-  std::vector<LinearStep> linear_;          ///< of the stages
+  SceneDerivatives derivatives_;
+  SceneState before_;                              ///< the last step
+  std::vector<std::optional<SparseStep>> linear_;  ///< of the stages
   std::optional<Stages> stages_;
   Eigen::MatrixXd start_;
+  LinearStep begin_;     ///< (v, mu, theta) of the start, by displacements of it and theta
+  bool begins_ = false;  ///< whether the last step was the first
 };
 
 /// Moves and turns what a motion at its start moves, and changes its momenta, by (v, mu); then brings places back to

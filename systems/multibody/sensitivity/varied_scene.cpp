@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -15,9 +16,11 @@ namespace {
 using V = VariedNumber;
 using VariedMat = Matrix<V, 3, 3>;
 
-/// x, of which the three numbers are directions `at`, `at` + 1, `at` + 2.
-VariedVec varied(const Vec& x, int at) { return lagroid::detail::varied_along(x, at); }
-V varied(double x, int at) { return 0 <= at && at < varied_at_once ? V::variable(x, at) : V(x); }
+/// x, of which the three numbers have the tangents from `at` on.
+VariedVec varied(const Vec& x, std::span<const VariedTangent> tangents, int at) {
+  const VariedTangent* const of = tangents.data() + at;
+  return {V(x(0), of[0]), V(x(1), of[1]), V(x(2), of[2])};
+}
 
 VariedMat constant_of(const Mat& a) { return a.cast<V>(); }
 
@@ -69,20 +72,27 @@ void VariedScene::place_points(BasicConfiguration<V>& at) const {
   model_.place_arms(at, {0, int(model_.points.arms.size())}, {0, int(model_.points.planar_arms.size())});
 }
 
+std::span<const VariedTangent> VariedScene::unit_tangents(int count, int first) {
+  tangents_.assign(std::size_t(count), VariedTangent{});
+  for (int k = std::max(0, first); k < std::min(count, first + varied_at_once); ++k)
+    tangents_[std::size_t(k)] = VariedTangent::unit(k - first);
+  return tangents_;
+}
+
 /// A node's places, attitudes and momenta, its states varied.
-void VariedScene::place(const SceneState& node, const SceneSizes& sizes, int first) {
+void VariedScene::place(const SceneState& node, const SceneSizes& sizes, std::span<const VariedTangent> tangents) {
   const int n = sizes.n();
   before_.time = node.at.time;
   for (int f = 0; f < sizes.linear; ++f) {
     const auto i = std::size_t(f);
-    before_.x[i] = varied(node.at.x[i], 3 * f - first);
-    momentum_[i] = varied(node.momentum[i], n + 3 * f - first);
+    before_.x[i] = varied(node.at.x[i], tangents, 3 * f);
+    momentum_[i] = varied(node.momentum[i], tangents, n + 3 * f);
   }
   for (int r = 0; r < sizes.rotations; ++r) {
     const auto i = std::size_t(r);
     const int at = 3 * (sizes.linear + r);
     const VariedMat a = constant_of(node.at.attitude[i]);
-    const VariedVec turn = varied(Vec::Zero(), at - first);
+    const VariedVec turn = varied(Vec::Zero(), tangents, at);
     before_.attitude[i] = a + a * SO3::hat(turn);
     const Quaternion& q = node.attitude[i];
     for (int k = 0; k < 4; ++k) {
@@ -90,7 +100,7 @@ void VariedScene::place(const SceneState& node, const SceneSizes& sizes, int fir
       for (int axis = 0; axis < 3; ++axis)
         quaternions_[i](k) += 0.5 * product(q, Quaternion::Unit(1 + axis))(k) * turn(axis);
     }
-    spin_[i] = varied(node.spin[i], n + at - first);
+    spin_[i] = varied(node.spin[i], tangents, n + at);
   }
   place_points(before_);
   for (const Model::Island& island : model_.islands) model_.react(before_, island, gradients_, row_sizes_);
@@ -131,25 +141,29 @@ void VariedScene::find_vakonomic_gradients(const BasicSceneArrow<V>& motion) {
 }
 
 void VariedScene::step(const SolvedStep& solved, const SceneSizes& sizes, int first) {
+  step(solved, sizes, unit_tangents(sizes.unknowns() + sizes.states(), first));
+}
+
+void VariedScene::step(const SolvedStep& solved, const SceneSizes& sizes, std::span<const VariedTangent> tangents) {
   const int n = sizes.n(), unknowns = sizes.unknowns();
   const Model::Factors& factors = model_.factors;
-  place(solved.before, sizes, first - unknowns);
+  place(solved.before, sizes, tangents.subspan(std::size_t(unknowns)));
   after_.time = solved.end;
   for (int f = 0; f < sizes.linear; ++f) {
     const auto i = std::size_t(f);
-    displacements_[i] = varied(solved.displacements[i], 3 * f - first);
+    displacements_[i] = varied(solved.displacements[i], tangents, 3 * f);
     after_.x[i] = before_.x[i] + displacements_[i];
   }
   for (int r = 0; r < sizes.rotations; ++r) {
     const auto i = std::size_t(r);
-    turns_[i] = varied(solved.turns[i], 3 * (sizes.linear + r) - first);
+    turns_[i] = varied(solved.turns[i], tangents, 3 * (sizes.linear + r));
     after_.attitude[i] = before_.attitude[i] * turned(factors.rotation, turns_[i]);
   }
   place_points(after_);
   std::fill(multipliers_.begin(), multipliers_.end(), V(0));
   for (std::size_t k = 0; k < sizes.rows.size(); ++k) {
     const auto row = std::size_t(sizes.rows[k]);
-    multipliers_[row] = varied(solved.multipliers[row], n + int(k) - first);
+    multipliers_[row] = V(solved.multipliers[row], tangents[std::size_t(n) + k]);
   }
   const BasicSceneArrow<V> motion{before_, after_, displacements_, turns_, solved.h};
   if (model_.rows.vakonomic) find_vakonomic_gradients(motion);
@@ -259,20 +273,32 @@ void VariedScene::project(const SceneSizes& sizes, double h, std::vector<VariedV
     if (model_.role(row) != Role::damping) rows.push_back(row);
   if (rows.empty()) return;
   const auto count = Eigen::Index(rows.size());
-  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(count, sizes.n());
-  Eigen::VectorXd inertia(sizes.n());
-  std::vector<Eigen::Index> place(model_.rows.roles.size(), -1);
-  for (Eigen::Index k = 0; k < count; ++k) place[std::size_t(rows[std::size_t(k)])] = k;
-  for (int f = 0; f < sizes.linear; ++f) inertia.segment<3>(3 * f) = values_of(model_.factors.inertia[std::size_t(f)]);
-  for (int r = 0; r < sizes.rotations; ++r)
-    inertia.segment<3>(3 * (sizes.linear + r)) = values_of(model_.factors.moments[std::size_t(r)]);
+  std::vector<int> place(model_.rows.roles.size(), -1);
+  for (Eigen::Index k = 0; k < count; ++k) place[std::size_t(rows[std::size_t(k)])] = int(k);
+  // Rows that move the same factor have an entry of D M^{-1} D^T.
+  struct Moved {
+    Vec inertia;
+    std::vector<std::pair<int, Vec>> by;  ///< a row's place and its gradient
+  };
+  std::vector<Moved> moved;
+  for (const VariedVec& inertia : model_.factors.inertia) moved.push_back({values_of(inertia), {}});
+  for (const VariedVec& moments : model_.factors.moments) moved.push_back({values_of(moments), {}});
   const auto put = [&](const Model::Entry& e, int from) {
-    if (const Eigen::Index k = place[std::size_t(e.row)]; k >= 0)
-      d.row(k).segment<3>(3 * (from + e.factor)) += values_of(gradients_[std::size_t(e.gradient)]);
+    if (const int k = place[std::size_t(e.row)]; k >= 0)
+      moved[std::size_t(from + e.factor)].by.emplace_back(k, values_of(gradients_[std::size_t(e.gradient)]));
   };
   for (const Model::Entry& e : model_.rows.linear_entries) put(e, 0);
   for (const Model::Entry& e : model_.rows.rotation_entries) put(e, sizes.linear);
-  const Eigen::PartialPivLU<Eigen::MatrixXd> matrix(d * inertia.cwiseInverse().asDiagonal() * d.transpose());
+  std::vector<std::pair<int, int>> pairs;
+  for (const Moved& factor : moved)
+    for (const auto& a : factor.by)
+      for (const auto& b : factor.by) pairs.emplace_back(a.first, b.first);
+  Elimination matrix(int(count), pairs);
+  for (const Moved& factor : moved)
+    for (const auto& a : factor.by)
+      for (const auto& b : factor.by)
+        matrix.value(matrix.index(a.first, b.first)) += a.second.dot(b.second.cwiseQuotient(factor.inertia));
+  const bool regular = matrix.factorise();
 
   const auto counts = [](Role role) { return role != Role::damping; };
   std::vector<V> mu(model_.rows.roles.size(), V(0));
@@ -281,17 +307,18 @@ void VariedScene::project(const SceneSizes& sizes, double h, std::vector<VariedV
     std::vector<VariedVec> p = linear, s = spin;
     react(mu, gradients_, counts, p, s);
     const std::vector<V> left = rates(p, s, h);
-    Eigen::MatrixXd right(count, 1 + varied_at_once);
+    Eigen::Matrix<double, Eigen::Dynamic, 1 + varied_at_once, Eigen::RowMajor> right(count, 1 + varied_at_once);
     for (Eigen::Index k = 0; k < count; ++k) {
       const V& each = left[std::size_t(rows[std::size_t(k)])];
       right(k, 0) = -each.value;
       for (int i = 0; i < varied_at_once; ++i) right(k, 1 + i) = pass == 0 ? 0 : -each.tangent(i);
     }
-    const Eigen::MatrixXd found = matrix.solve(right);
+    matrix.solve(right.data(), int(right.cols()));
+    if (!regular) right.setConstant(std::numeric_limits<double>::quiet_NaN());
     for (Eigen::Index k = 0; k < count; ++k) {
       V& each = mu[std::size_t(rows[std::size_t(k)])];
-      each += V(found(k, 0));
-      for (int i = 0; i < varied_at_once; ++i) each += V::variable(0, i) * found(k, 1 + i);
+      each += V(right(k, 0));
+      for (int i = 0; i < varied_at_once; ++i) each += V::variable(0, i) * right(k, 1 + i);
     }
   }
   react(mu, gradients_, counts, linear, spin);
@@ -299,7 +326,7 @@ void VariedScene::project(const SceneSizes& sizes, double h, std::vector<VariedV
 
 VariedNumbers VariedScene::observe(const SceneState& node, const SceneSizes& sizes, int first) {
   if (observe_ == nullptr) return {};
-  place(node, sizes, first);
+  place(node, sizes, unit_tangents(sizes.states(), first));
   project(sizes, node.step, momentum_, spin_);
   V kinetic = 0, potential = 0;
   for (std::size_t f = 0; f < momentum_.size(); ++f)
@@ -312,7 +339,7 @@ VariedNumbers VariedScene::observe(const SceneState& node, const SceneSizes& siz
 }
 
 VariedNumbers VariedScene::tangent_momenta(const SceneState& node, const SceneSizes& sizes, int first) {
-  place(node, sizes, first);
+  place(node, sizes, unit_tangents(sizes.states(), first));
   const auto is_vakonomic = [](Role role) { return role == Role::vakonomic; };
   const std::vector<double>& multipliers = node.guess.multipliers[0];
   std::vector<V> added(multipliers.begin(), multipliers.end());

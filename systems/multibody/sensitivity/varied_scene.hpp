@@ -15,12 +15,15 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace lagroid::multibody {
 
 using VariedVec = Vector<VariedNumber, 3>;
 using VariedNumbers = Eigen::Matrix<VariedNumber, Eigen::Dynamic, 1>;
+/// Along what a number is varied.
+using VariedTangent = VariedNumber::Tangent;
 
 /// What is seen of a scene at a node; places and momenta in the order of the model.
 struct ObservedScene {
@@ -83,6 +86,8 @@ class VariedScene {
   /// The equations of a step and its end, varied along the unknowns and the states from direction `first` on: unknowns
   /// first, then states. Past them, where `first` is beyond, by the numbers of this scene alone.
   void step(const SolvedStep& solved, const SceneSizes& sizes, int first);
+  /// The same with a tangent for each unknown and then each state.
+  void step(const SolvedStep& solved, const SceneSizes& sizes, std::span<const VariedTangent> tangents);
   const VariedNumbers& equations() const { return equations_; }
   const VariedNumbers& end() const { return end_; }
   /// The equations of rows that depend on others, which hold with those.
@@ -108,7 +113,9 @@ class VariedScene {
   using Model = BasicModel<V>;
   using Role = multibody::Role;
 
-  void place(const SceneState& node, const SceneSizes& sizes, int first);
+  /// Tangents of so many numbers, unit ones of those from `first` on.
+  std::span<const VariedTangent> unit_tangents(int count, int first);
+  void place(const SceneState& node, const SceneSizes& sizes, std::span<const VariedTangent> tangents);
   void place_points(BasicConfiguration<V>& at) const;
   void find_vakonomic_gradients(const BasicSceneArrow<V>& motion);
   /// Adds multipliers times gradients of the rows of which the role counts.
@@ -124,6 +131,7 @@ class VariedScene {
   BasicSceneState<V> start_;
   std::function<VariedNumbers(const ObservedScene&)> observe_;
   bool projects_;
+  std::vector<VariedTangent> tangents_;
 
   BasicConfiguration<V> before_, after_;
   std::vector<Vector<V, 4>> quaternions_;  ///< of `before_`

@@ -1,6 +1,7 @@
 #include <lagroid/systems/multibody/solver/assembly.hpp>
 
 #include <lagroid/core/derivatives/varied_directions.hpp>
+#include <lagroid/systems/multibody/control/second_number.hpp>
 #include <lagroid/systems/multibody/solver/orders.hpp>
 
 #include <algorithm>
@@ -468,5 +469,6 @@ template <class S> void Assembly<S>::add_effects() {
 
 template BasicAssembled<double> assemble(Scene, double);
 template BasicAssembled<VariedNumber> assemble(BasicScene<VariedNumber>, double);
+template BasicAssembled<SecondNumber> assemble(BasicScene<SecondNumber>, double);
 
 }  // namespace lagroid::multibody

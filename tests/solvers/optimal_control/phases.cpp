@@ -216,12 +216,13 @@ TEST(ControlPhases, DurationsMayBeBounded) {
 }
 
 // Without bounds a poor start shrinks a phase to nothing, where the violation is stationary in the logarithm of its
-// time.
+// time. (Straight starts of two phases of equal times are saddles of the violation, which no derivative leads away
+// from.)
 TEST(ControlPhases, BoundsKeepAPhaseFromShrinkingToNothing) {
   const auto converged = [](bool bounded) {
     int count = 0;
     for (const double first : {0.5, 1.0, 2.0})
-      for (const double second : {0.5, 1.0, 2.0}) {
+      for (const double second : {0.6, 1.1, 2.2}) {
         auto task = bang_bang({{0, 1}, {0, 0}}, -1);
         task.phases[0].duration = first;
         task.phases[1].duration = second;

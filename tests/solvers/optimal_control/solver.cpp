@@ -4,6 +4,8 @@
 
 #include <lagroid/systems/control/flows/double_integrator.hpp>
 #include <lagroid/systems/control/flows/dubins_car.hpp>
+#include <lagroid/systems/control/flows/steered_car.hpp>
+#include <lagroid/systems/control/flows/swing_up.hpp>
 
 #include "../../support/allocation_counter.hpp"
 
@@ -16,10 +18,11 @@ namespace {
 
 ControlTask<DoubleIntegrator> rest_to_rest() { return {{}, {{0, 0}, {1, 0}}, 1}; }
 
-TEST(SymmetricFactorsSized, SolveAndCountNegativeEigenvalues) {
+TEST(SymmetricFactorsSized, InvertAndCountNegativeEigenvalues) {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
-  for (const int size : {1, 2, 5, 12, 23}) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  for (const int size : {1, 2, 5, 8, 12, 23}) {
     SymmetricFactorSized factor(size);
     for (int sample = 0; sample < 20; ++sample) {
       Eigen::MatrixXd a(size, size);
@@ -28,13 +31,13 @@ TEST(SymmetricFactorsSized, SolveAndCountNegativeEigenvalues) {
       if (sample % 2 == 0) a.topLeftCorner(size / 2, size / 2).setZero();  // as in a KKT matrix
       const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a).eigenvalues();
       if (eigenvalues.cwiseAbs().minCoeff() < 1e-3) continue;
-      factor.compute(a.data());
+      factor.compute(a.data(), size);
       EXPECT_EQ(factor.negative(), (eigenvalues.array() < 0).count());
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> b(size, 2);
-      for (double& x : b.reshaped()) x = normal(generator);
-      const Eigen::MatrixXd right = b;
-      factor.solve_in_place(b.data(), 2);
-      EXPECT_LT((a * b - right).norm(), 1e-9 * right.norm());
+      Rows inverse(size, padded(size));
+      factor.invert(inverse.data());
+      const Rows identity = Rows::Identity(size, size);
+      EXPECT_LT((a * inverse.leftCols(size) - identity).norm(), 1e-9);
+      EXPECT_EQ(inverse.rightCols(padded(size) - size).norm(), 0);
     }
   }
 }
@@ -42,10 +45,10 @@ TEST(SymmetricFactorsSized, SolveAndCountNegativeEigenvalues) {
 TEST(SymmetricFactorsSized, ShowASingularMatrix) {
   SymmetricFactorSized factor(2);
   const double singular[] = {1, 1, 1, 1};
-  factor.compute(singular);
+  factor.compute(singular, 2);
   EXPECT_LT(factor.smallest(), 1e-15);
   const double none[] = {NAN, 0, 0, 1};
-  factor.compute(none);
+  factor.compute(none, 2);
   EXPECT_EQ(factor.smallest(), 0);
 }
 
@@ -65,6 +68,39 @@ TEST(ControlSolvers, BadTasksAreRefusedInWords) {
   task.duration = 0;
   EXPECT_THROW(solve_control(task, 10), std::invalid_argument);
   EXPECT_THROW(solve_control(rest_to_rest(), 1), std::invalid_argument);
+}
+
+/// Aside by a metre, from rest to rest.
+ControlTask<SteeredCar> parking() {
+  SteeredCar car;
+  car.largest_steering = 0.6;
+  using States = FlowStates<SteeredCar::GroupoidType>;
+  ControlTask<SteeredCar> task{car, States::arrow({0, 0, 0, 0, 0}, {0, 1, 0, 0, 0}), 6};
+  task.lower << -1, -2;
+  task.upper << 1, 2;
+  return task;
+}
+
+// At rest no displacement moves a car aside, to first order: the straight start is a stationary point of the violation.
+TEST(ControlSolvers, StartsThatFailEndSoon) {
+  const ControlReport parked = solve_control(parking(), 40).report;
+  EXPECT_EQ(parked.status, ControlStatus::infeasible);
+  EXPECT_LE(parked.iterations, 30);
+  ControlTask<SwingUp> swing{{}, {{0, 0}, {3.14159, 0}}, 3};  // too short for this torque
+  swing.lower(0) = -0.5;
+  swing.upper(0) = 0.5;
+  const ControlReport swung = solve_control(swing, 100).report;
+  EXPECT_EQ(swung.status, ControlStatus::infeasible);
+  EXPECT_LE(swung.iterations, 200);
+  EXPECT_GT(swung.violation, 0.1);
+}
+
+// The third and the fourth start turn the car around once, for which there is no time; the fifth bends its way.
+TEST(ControlSolvers, FiveStartsParkACar) {
+  const auto found = search_control(parking(), 40, {.starts = 5});
+  EXPECT_EQ(found.outcomes.at(ControlStatus::infeasible), 4);
+  ASSERT_EQ(found.minima.size(), 1);
+  EXPECT_NEAR(found.minima.front().report.cost, 8.12609, 1e-5);
 }
 
 // One second from rest to rest over a distance of one takes a force of four.

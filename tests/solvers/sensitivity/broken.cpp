@@ -71,7 +71,7 @@ class Forgetful final : public LinearisedMotion {
   StepReport advance() override { return motion_.advance(); }
   bool linearise() override { return motion_.linearise(); }
   int stages() const override { return motion_.stages(); }
-  const LinearStep& stage(int k) const override { return motion_.stage(k); }
+  const StepDerivative& stage(int k) const override { return motion_.stage(k); }
   NodeValues observe() const override { return motion_.observe(); }
   void serialize(NumberArchive& archive) override {
     if (!archive.reading()) motion_.serialize(archive);

@@ -1,0 +1,225 @@
+#include "bodies_keys.hpp"
+
+#include "../search_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace lagroid::app {
+
+namespace {
+
+using multibody::KeepOut;
+using multibody::SceneEnd;
+using multibody::Site;
+using multibody::Vec;
+
+const KeyOf<Text> effect_key{"effect", {}, "", "name of the effect whose strength is a control u"};
+const KeyOf<NumberArray> bounds_key{"bounds", {2}, "", "least and largest u", {}, "none"};
+const KeyOf<Number> weight_key{"weight", {nonnegative}, "", "w of the cost w u^2", 1.0};
+
+const KeyOf<NumberArray> point_key =
+    vector_key("at", "m", "the point of the body, in its frame, that position is of", Vec::Zero());
+const KeyOf<NumberList> position_key{"position", {}, "m", "x, y, z; of a planar body x, y", {}, "free"};
+const KeyOf<AnyAttitude> attitude_key{"attitude", {},    "", "a unit quaternion w, x, y, z, or a rotation vector (rad)",
+                                      {},         "free"};
+const KeyOf<Number> angle_key{"angle", {}, "rad", "of a planar body", {}, "free"};
+const KeyOf<NumberList> velocity_key{"velocity", {}, "m/s", "of its centre; of a planar body x, y", {}, "free"};
+const KeyOf<NumberList> turning_key{
+    "angular_velocity", {}, "rad/s", "in the body's frame; of a planar body one number", {}, "free"};
+const KeyOf<Flag> at_rest_key{"at_rest", {}, "", "true: velocity and angular velocity are zero", false};
+
+const KeyOf<NumberArray> kept_point =
+    vector_key("at", "m", "the point that keeps out, in the body's frame", Vec::Zero());
+const KeyOf<NumberArray> centre_key = vector_key("centre", "m", "x, y, z");
+const KeyOf<Number> radius_key{"radius", {positive}, "m", "of it"};
+const KeyOf<NumberArray> on_key = vector_key("point", "m", "of the plane");
+const KeyOf<NumberArray> normal_key = vector_key("normal", "", "leads to the side that the point stays on");
+const KeyOf<Number> time_weight{"weight", {nonnegative}, "", "w of the cost w T, which a free duration needs", 0.0};
+
+struct KeepOutKind {
+  const char* name;
+  const char* about;
+  KeepOut::Kind kind;
+  std::vector<Key> keys;
+};
+const std::vector<KeepOutKind>& keep_out_kinds() {
+  static const std::vector<KeepOutKind> all{
+      {"sphere", "the point keeps out of a sphere", KeepOut::Kind::sphere, {centre_key, radius_key}},
+      {"disk",
+       "the point keeps out of a disk in the plane of x and y, a cylinder along z",
+       KeepOut::Kind::disk,
+       {centre_key, radius_key}},
+      {"plane", "the point stays on one side of a plane", KeepOut::Kind::plane, {on_key, normal_key}}};
+  return all;
+}
+KeyOf<OneOf> kind_key(const std::vector<KeepOutKind>& kinds) {
+  KeyOf<OneOf> key{"kind"};
+  for (const KeepOutKind& each : kinds) key.value.words.emplace_back(each.name);
+  return key;
+}
+
+/// A point of a body.
+struct PointOf {
+  std::string body;
+  Vec arm;
+};
+/// Adds them to a scene that was read over any numbers: they have the same sites in each.
+template <class S> BasicSceneBodies<S> with_points(BasicSceneBodies<S> bodies, const std::vector<PointOf>& points) {
+  for (const PointOf& each : points)
+    for (const BasicNamedBody<S>& body : bodies.bodies)
+      if (body.name == each.body) bodies.scene.point_of(body.body, each.arm.template cast<S>());
+  return bodies;
+}
+
+/// Reads [[end]] and [[constraint]], of points that are added to the bodies.
+class Reader {
+ public:
+  Reader(SceneBodies& bodies, BodiesControl& out) : bodies_(bodies), out_(out) {}
+
+  void read_end(const Section& table) {
+    const NamedBody& body = bodies_.named(table, body_key.name, read_key(table, body_key));
+    SceneEnd& end = out_.task.end;
+    if (table.has(position_key.name)) {
+      const auto place = numbers(table, position_key, body.planar ? 2 : 3);
+      const Attachment point = point_of(table, point_key, body);
+      if (body.linear < 0 && point.arm.isZero(0))
+        table.fail("position", fmt::format("\"{}\" is held at its pivot: give a point of it by at", body.name));
+      for (int i = 0; i < int(place.size()); ++i) end.places.push_back({point.site, i, place[std::size_t(i)]});
+    } else if (table.has(point_key.name)) {
+      table.fail(point_key.name, "is the point that position is of: give position, or leave it out");
+    }
+    if (table.has(attitude_key.name)) {
+      if (body.body.attitude.index < 0)
+        table.fail("attitude",
+                   fmt::format("\"{}\" does not turn in space{}", body.name, body.planar ? ": give its angle" : ""));
+      const auto q = read_key_or(table, attitude_key, {});
+      end.turns.push_back({body.body.attitude, {q[0], q[1], q[2], q[3]}});
+    }
+    if (table.has(angle_key.name)) {
+      if (!body.planar) table.fail("angle", fmt::format("\"{}\" is no planar body", body.name));
+      end.places.push_back({bodies_.scene.planar_place(body.body), 2, read_key_or(table, angle_key, 0)});
+    }
+    const bool at_rest = read_key(table, at_rest_key);
+    if (table.has(velocity_key.name) || (at_rest && body.linear >= 0)) {
+      if (body.linear < 0) table.fail("velocity", fmt::format("\"{}\" is held at its pivot", body.name));
+      const auto v = given_or_zero(table, velocity_key, body.planar ? 2 : 3, at_rest);
+      for (int i = 0; i < int(v.size()); ++i) end.velocities.push_back({body.linear, i, v[std::size_t(i)]});
+    }
+    const bool turns = body.planar || body.body.attitude.index >= 0;
+    if (!table.has(turning_key.name) && !(at_rest && turns)) return;
+    if (!turns) table.fail("angular_velocity", fmt::format("\"{}\" does not turn", body.name));
+    const auto w = given_or_zero(table, turning_key, body.planar ? 1 : 3, at_rest);
+    for (int i = 0; i < int(w.size()); ++i) {
+      if (body.planar) end.velocities.push_back({body.linear, 2, w[0]});
+      if (!body.planar) end.turnings.push_back({body.body.attitude, i, w[std::size_t(i)]});
+    }
+  }
+
+  void read_keep_out(const Section& table) {
+    const std::string kind = read_key(table, kind_key(keep_out_kinds()));
+    const auto found = std::find_if(keep_out_kinds().begin(), keep_out_kinds().end(),
+                                    [&](const KeepOutKind& each) { return each.name == kind; });
+    const NamedBody& body = bodies_.named(table, body_key.name, read_key(table, body_key));
+    KeepOut keep_out;
+    keep_out.kind = found->kind;
+    const Attachment point = point_of(table, kept_point, body);
+    keep_out.site = point.site;
+    const auto vector = [&](const KeyOf<NumberArray>& key) { return Vec(read_key(table, key).data()); };
+    if (keep_out.kind == KeepOut::Kind::plane) {
+      keep_out.centre = vector(on_key);
+      keep_out.normal = vector(normal_key);
+      if (!(keep_out.normal.norm() > 0)) table.fail("normal", "must not vanish");
+      keep_out.normal.normalize();
+    } else {
+      keep_out.centre = vector(centre_key);
+      keep_out.radius = read_key(table, radius_key);
+    }
+    if (keep_out.value(point.place) > 0) table.fail("", fmt::format("\"{}\" is inside at the start", body.name));
+    out_.task.keep_outs.push_back(keep_out);
+  }
+
+  const std::vector<PointOf>& points() const { return points_; }
+
+ private:
+  static std::vector<double> numbers(const Section& table, const KeyOf<NumberList>& key, std::size_t count) {
+    const std::vector<double> out = read_key_or(table, key, {});
+    if (out.size() != count) table.fail(key.name, fmt::format("give {} numbers of this body", count));
+    return out;
+  }
+  static std::vector<double> given_or_zero(const Section& table, const KeyOf<NumberList>& key, std::size_t count,
+                                           bool at_rest) {
+    if (!table.has(key.name)) return std::vector<double>(count, 0.0);
+    if (at_rest) table.fail(key.name, "leave it out of a body at_rest");
+    return numbers(table, key, count);
+  }
+  Attachment point_of(const Section& table, const KeyOf<NumberArray>& key, const NamedBody& body) {
+    points_.push_back({body.name, Vec(read_key(table, key).data())});
+    return bodies_.end_of(table, key.name, &body, points_.back().arm);
+  }
+
+  SceneBodies& bodies_;
+  BodiesControl& out_;
+  std::vector<PointOf> points_;
+};
+
+}  // namespace
+
+BodiesControl read_controlled_bodies(const Section& scene) {
+  BodiesControl out;
+  SceneBodies bodies = read_scene_bodies(scene);
+  if (bodies.timed)
+    scene.fail("effect", "forces and grounds that follow time are not controlled here: leave out rate and phase");
+  if (bodies.projects)
+    scene.fail("project_velocities", "give velocities that the joints allow: a controlled scene starts with them");
+  Reader reader(bodies, out);
+  for (const Section& table : scene.tables("end")) reader.read_end(table);
+  for (const Section& table : scene.tables("constraint")) reader.read_keep_out(table);
+  const Section text = scene;
+  const std::vector<PointOf> points = reader.points();
+  out.task.scene = [text, points] { return with_points(read_scene_bodies(text), points).scene; };
+  out.task.second = [text, points] { return with_points(read_second_scene(text), points).scene; };
+  for (const Section& table : scene.tables("actuator")) {
+    multibody::Actuator& actuator = out.task.actuators.emplace_back();
+    actuator.effect = read_key(table, effect_key);
+    actuator.weight = read_key(table, weight_key);
+    if (!table.has(bounds_key.name)) continue;
+    const auto range = read_key_or(table, bounds_key, {});
+    if (!(range[0] < range[1]))
+      table.fail("bounds", fmt::format("{} is not below {}; give the lower bound first", range[0], range[1]));
+    actuator.lower = range[0];
+    actuator.upper = range[1];
+  }
+  const Section horizon = scene.section("horizon", "duration and stages");
+  out.task.duration = read_key(horizon, duration_key);
+  out.task.duration_is_free = read_key(horizon, free_key);
+  out.task.duration_weight = read_key(horizon, time_weight);
+  out.task.stages = read_key(horizon, stages_key);
+  read_search(scene.section_or_empty("solver"), out.search);
+  out.bodies.assign(bodies.bodies.begin(), bodies.bodies.end());
+  scene.finish();
+  return out;
+}
+
+std::vector<Key> controlled_bodies_keys() {
+  std::vector<Key> out = bodies_table().keys;
+  Table keep_outs;
+  for (const KeepOutKind& each : keep_out_kinds()) {
+    Table& kind = keep_outs.kinds.emplace_back(Table{{kind_key({each}), body_key, kept_point}, {}, each.about});
+    kind.keys.insert(kind.keys.end(), each.keys.begin(), each.keys.end());
+  }
+  const Table end{{body_key, point_key, position_key, attitude_key, angle_key, velocity_key, turning_key, at_rest_key}};
+  out.insert(
+      out.end(),
+      {KeyOf<Tables>{"actuator", {{{effect_key, bounds_key, weight_key}}}, "", "the controls"},
+       KeyOf<Tables>{"end", {end}, "", "what is given of the end, body by body", {}, "all is free"},
+       KeyOf<Tables>{"constraint", {keep_outs}, "", "what points of bodies keep out of", {}, "none"},
+       KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key, time_weight}}, "", "how long, in how many arrows"},
+       optional_table("solver", {search_keys()}, "of the search")});
+  return out;
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,27 @@
+#pragma once
+/// A scene of bodies of which effects are controlled, as it is written: the tables of a scene that runs, and
+/// [[actuator]], [[end]], [[constraint]], [horizon] and [solver].
+///
+///     const BodiesControl read = read_controlled_bodies(scene);
+///     multibody::ControlledScene controlled(read.task);
+
+#include "../../bodies/scene_bodies.hpp"
+#include "../../keys/key.hpp"
+
+#include <lagroid/systems/multibody/control/scene_search.hpp>
+
+#include <vector>
+
+namespace lagroid::app {
+
+struct BodiesControl {
+  multibody::SceneControl task;
+  multibody::SceneSearchOptions search;
+  std::vector<NamedBody> bodies;
+};
+
+/// Throws SceneError.
+BodiesControl read_controlled_bodies(const Section& scene);
+std::vector<Key> controlled_bodies_keys();
+
+}  // namespace lagroid::app

@@ -1,0 +1,43 @@
+#pragma once
+/// The keys of [horizon] and [solver] that every optimal control problem has.
+
+#include "../keys/key.hpp"
+
+#include <lagroid/solvers/control/control_search.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace lagroid::app {
+
+inline const NumberRule a_tolerance{"from 1e-13 to 1e-2", [](double x) { return x >= 1e-13 && x <= 1e-2; }};
+inline const KeyOf<Number> duration_key{"duration", {positive}, "s", "T; where it is free, the first guess of it"};
+inline const KeyOf<Flag> free_key{"free", {}, "", "true: the duration is an unknown", false};
+inline const KeyOf<Whole> stages_key{"stages", {2, 1'000'000}, "", "N, arrows between the ends", 100L};
+inline const KeyOf<Whole> starts_key{
+    "starts", {1, 100'000}, "", "trajectories to start from: straight, drifting, then wound and bent", 10L};
+inline const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of the starts", 1L};
+inline const KeyOf<Number> tolerance_key{
+    "tolerance", {a_tolerance}, "", "on every part of the KKT residual", ControlOptions().tolerance};
+inline const KeyOf<Whole> iterations_key{
+    "iterations", {1, 1'000'000}, "", "of each start, at most", long(ControlOptions().max_iterations)};
+inline const KeyOf<Number> patience_key{
+    "patience",
+    {nonnegative},
+    "",
+    "a start is given up after so many times the iterations of the slowest that has "
+    "converged, at least 100; 0: none is",
+    ControlSearchOptions().patience};
+
+inline std::vector<Key> search_keys() { return {starts_key, seed_key, tolerance_key, iterations_key, patience_key}; }
+
+/// Of a search of any problem.
+template <class Options> void read_search(const Section& solver, Options& out) {
+  out.starts = int(read_key(solver, starts_key));
+  out.seed = std::uint64_t(read_key(solver, seed_key));
+  out.solver.tolerance = read_key(solver, tolerance_key);
+  out.patience = read_key(solver, patience_key);
+  out.solver.max_iterations = int(read_key(solver, iterations_key));
+}
+
+}  // namespace lagroid::app

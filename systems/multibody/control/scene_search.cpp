@@ -1,0 +1,161 @@
+#include <lagroid/systems/multibody/control/scene_search.hpp>
+
+#include <lagroid/systems/multibody/control/arrow_momenta.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+
+namespace lagroid::multibody {
+
+namespace {
+
+/// At rest, or in the middle of its bounds.
+double resting(const Actuator& of) {
+  if (std::isfinite(of.lower) && std::isfinite(of.upper)) return 0.5 * (of.lower + of.upper);
+  return std::clamp(0.0, of.lower, of.upper);
+}
+
+/// Momenta of inner nodes: those with which arrows leave and reach them, in the mean.
+void settle(ControlledScene& scene, ScenePath& path) {
+  for (std::size_t k = 1; k + 1 < path.nodes.size(); ++k)
+    for (int f = 0; f < scene.factors(); ++f) {
+      const auto momenta = [&](const ControlledNode& from, const ControlledNode& to) {
+        if (f < scene.linear()) {
+          const Vec moved = to.places[std::size_t(f)] - from.places[std::size_t(f)];
+          return arrow_momenta<double>(scene.inertia(f), moved, path.step);
+        }
+        const auto r = std::size_t(f - scene.linear());
+        const Mat turn = from.attitudes[r].transpose() * to.attitudes[r];
+        return arrow_momenta<double>(scene.inertia(f), scene.rotation(), turn, path.step);
+      };
+      path.nodes[k].momenta.segment<3>(3 * f) =
+          0.5 * (momenta(path.nodes[k - 1], path.nodes[k]).target + momenta(path.nodes[k], path.nodes[k + 1]).source);
+    }
+}
+
+ScenePath between_ends(const ControlledScene& scene) {
+  const SceneControl& task = scene.task();
+  ScenePath out;
+  out.nodes.assign(std::size_t(task.stages) + 1, scene.start());
+  out.nodes.back() = scene.end();
+  out.controls = StageRows(task.stages, scene.actuators() + scene.joints());
+  for (long k = 0; k < task.stages; ++k)
+    for (int j = 0; j < scene.actuators(); ++j) out.controls[k][j] = resting(task.actuators[std::size_t(j)]);
+  out.step = task.duration / double(task.stages);
+  return out;
+}
+
+}  // namespace
+
+ScenePath scene_guess(ControlledScene& scene, int index, const SceneSearchOptions& options) {
+  ScenePath out = between_ends(scene);
+  const long stages = out.stages();
+  const int n = scene.n();
+  Eigen::VectorXd whole = scene.difference(scene.start(), scene.end());
+  const auto drift = index == 1 ? scene.drift(stages) : std::nullopt;
+  if (drift) whole = scene.difference(drift->back(), scene.end());
+  constexpr int modes = 3;
+  Eigen::MatrixXd bends = Eigen::MatrixXd::Zero(n, modes);
+  if (index > 1) {
+    std::seed_seq sequence{std::uint32_t(options.seed), std::uint32_t(options.seed >> 32), std::uint32_t(index)};
+    std::mt19937_64 generator(sequence);
+    const double length = whole.head(n).norm();
+    const double amplitude = options.amplitude > 0 ? options.amplitude : length > 1e-3 ? length : 1;
+    std::uniform_real_distribution<double> octave(-3, 1);
+    std::normal_distribution<double> normal(0, amplitude * std::exp2(octave(generator)));
+    for (double& x : bends.reshaped()) x = normal(generator);
+    if (scene.task().duration_is_free) out.step *= std::exp2(std::uniform_real_distribution<double>(-1, 1)(generator));
+  }
+  for (long k = 1; k < stages; ++k) {
+    const double t = double(k) / double(stages);
+    Eigen::VectorXd by = (drift ? t * t : t) * whole;
+    for (int j = 0; j < modes; ++j) by.head(n) += std::sin((j + 1) * std::numbers::pi * t) / (j + 1) * bends.col(j);
+    ControlledNode& node = out.nodes[std::size_t(k)];
+    scene.displace(drift ? (*drift)[std::size_t(k)] : scene.start(), by.data(), 1, node);
+    scene.project(node);  // where joints are not reached, the solver has to
+  }
+  settle(scene, out);
+  return out;
+}
+
+ScenePath halved(ControlledScene& scene, const ScenePath& path) {
+  ScenePath out;
+  out.nodes.push_back(path.nodes.front());
+  out.controls = StageRows(2 * path.stages(), path.controls.length());
+  out.step = path.step / 2;
+  for (long k = 0; k < path.stages(); ++k) {
+    const ControlledNode& from = path.nodes[std::size_t(k)];
+    const ControlledNode& to = path.nodes[std::size_t(k) + 1];
+    const Eigen::VectorXd by = scene.difference(from, to);
+    ControlledNode& middle = out.nodes.emplace_back(from);
+    scene.displace(from, by.data(), 0.5, middle);
+    middle.momenta = 0.5 * (from.momenta + to.momenta);
+    scene.project(middle);
+    out.nodes.push_back(to);
+    for (const long half : {2 * k, 2 * k + 1})
+      for (int j = 0; j < path.controls.length(); ++j)  // reactions are impulses
+        out.controls[half][j] = path.controls[k][j] * (j < scene.actuators() ? 1 : 0.5);
+  }
+  return out;
+}
+
+SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const ControlOptions& options) {
+  SceneTranscription transcription(scene, std::move(start));
+  InteriorPoint solver(transcription, options);
+  SceneSolution out;
+  out.report = solver.solve();
+  const auto keep = [&](const auto& solved) {
+    out.path = transcription.path();
+    out.costates = solved.costates();
+    out.inequality_multipliers = solved.inequality_multipliers();
+  };
+  keep(solver);
+  if (!options.crossover || !out.report.converged()) return out;
+  Crossover crossover(transcription);
+  out.crossover = crossover.cross(solver.costates(), solver.inequality_multipliers());
+  if (!out.crossover.crossed()) return out;
+  keep(crossover);
+  out.report.cost = out.crossover.cost;
+  out.report.stationarity = out.crossover.after.stationarity;
+  out.report.violation = out.crossover.after.violation;
+  out.report.complementarity = out.crossover.after.complementarity;
+  return out;
+}
+
+SceneSearch search_scene(ControlledScene& scene, const SceneSearchOptions& options,
+                         const std::function<bool(int)>& keep_going) {
+  constexpr int least = 100;
+  SceneSearch found;
+  int slowest = 0;
+  for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
+    ControlOptions solver = options.solver;
+    if (slowest > 0 && options.patience > 0)
+      solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
+    SceneSolution solution = solve_scene(scene, scene_guess(scene, i, options), solver);
+    ++found.outcomes[solution.report.status];
+    found.iterations += solution.report.iterations;
+    if (!solution.report.converged()) {
+      if (i == 0 || !(found.best_failure.report.violation <= solution.report.violation))
+        found.best_failure = std::move(solution);
+      continue;
+    }
+    slowest = std::max(slowest, solution.report.iterations);
+    const auto same = [&](const SceneSolution& known) {
+      return std::abs(known.report.cost - solution.report.cost) <= 1e-7 * (1e-6 + std::abs(solution.report.cost));
+    };
+    if (std::none_of(found.minima.begin(), found.minima.end(), same)) found.minima.push_back(std::move(solution));
+  }
+  std::sort(found.minima.begin(), found.minima.end(),
+            [](const auto& a, const auto& b) { return a.report.cost < b.report.cost; });
+  return found;
+}
+
+SceneSearch search_scene(SceneControl task, const SceneSearchOptions& options) {
+  ControlledScene scene(std::move(task));
+  return search_scene(scene, options);
+}
+
+}  // namespace lagroid::multibody

@@ -1,0 +1,61 @@
+#pragma once
+/// Optimal control of a scene of bodies, from many starts: one start finds one local minimum.
+///
+///     const SceneSearch found = search_scene(task, {.starts = 4});
+///     if (!found.minima.empty()) std::cout << found.minima.front().report.cost << '\n';  // the cheapest
+///
+/// The first start leads straight from the scene's start to its end, by way of where the joints hold; the second is the
+/// motion without controls, bent toward the end; the others are straight ones bent at random. All have the momenta of
+/// their motion. Requires what ControlledScene requires (std::invalid_argument otherwise). Returns the distinct
+/// solutions, cheapest first, and how every start ended. The same seed finds the same.
+
+#include <lagroid/solvers/control/interior_point.hpp>
+#include <lagroid/solvers/control/optimality/crossover.hpp>
+#include <lagroid/systems/multibody/control/scene_transcription.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace lagroid::multibody {
+
+struct SceneSearchOptions {
+  int starts = 4;
+  std::uint64_t seed = 1;
+  double amplitude = 0;  ///< of bends, m and rad; 0: the way from start to end, or one
+  /// A start is given up after so many times the iterations of the slowest that has converged, at least 100. 0: none
+  /// is.
+  double patience = 4;
+  ControlOptions solver = {};
+};
+
+struct SceneSolution {
+  ScenePath path;
+  StageRows costates;                ///< of the stages' equations, behind them those of joints, or of the end
+  StageRows inequality_multipliers;  ///< of what is kept out of, then of finite bounds: of each control upper, lower
+  ControlReport report;
+  CrossoverReport crossover;
+};
+
+struct SceneSearch {
+  std::vector<SceneSolution> minima;  ///< distinct ones, cheapest first
+  SceneSolution best_failure;         ///< where there are none
+  std::map<ControlStatus, int> outcomes;
+  int iterations = 0;
+};
+
+/// Start `index`, the same whatever the number of starts.
+ScenePath scene_guess(ControlledScene& scene, int index, const SceneSearchOptions& options = {});
+/// With a node between each two, and the controls of both halves those of the whole.
+ScenePath halved(ControlledScene& scene, const ScenePath& path);
+
+SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const ControlOptions& options = {});
+
+/// Before each start `keep_going(start)` decides whether it is made.
+SceneSearch search_scene(
+    ControlledScene& scene, const SceneSearchOptions& options = {},
+    const std::function<bool(int start)>& keep_going = [](int) { return true; });
+SceneSearch search_scene(SceneControl task, const SceneSearchOptions& options = {});
+
+}  // namespace lagroid::multibody

@@ -1,0 +1,82 @@
+// What cannot be controlled is refused in one line that says why.
+#include "scenes.hpp"
+
+#include <lagroid/systems/multibody/control/controlled_scene.hpp>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace lagroid {
+namespace {
+
+using namespace controlled_bodies_tests;
+
+void expect_refused(const std::function<void(SceneControl&)>& spoil, const std::string& why) {
+  SceneControl task = control_of_scene(HingedBar{});
+  task.actuators = {{"motor", -1, 1}};
+  task.stages = 4;
+  EXPECT_NO_THROW(ControlledScene{task});
+  spoil(task);
+  try {
+    const ControlledScene scene(task);
+    ADD_FAILURE() << "not refused: " << why;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+  }
+}
+
+/// The hinged bar with something more, which the lambda adds to it: more.operator()<S>(scene).
+template <class More> auto with(const More& more) {
+  return [more](SceneControl& task) {
+    const auto write = [more]<class S>() {
+      BasicScene<S> scene = HingedBar{}.operator()<S>();
+      more(scene);
+      return scene;
+    };
+    const std::vector<Actuator> actuators = task.actuators;
+    task = control_of_scene(write);
+    task.actuators = actuators;
+  };
+}
+
+TEST(ControlledBodies, WhatCannotBeControlledIsRefused) {
+  expect_refused([](auto& task) { task.actuators[0].effect = "engine"; }, "there is no effect \"engine\"");
+  expect_refused([](auto& task) { task.actuators.push_back({"motor"}); }, "controlled twice");
+  expect_refused([](auto& task) { task.actuators.clear(); }, "nothing is controlled");
+  expect_refused([](auto& task) { task.actuators[0].upper = -1; }, "is not below its upper bound");
+  expect_refused([](auto& task) { task.actuators[0].weight = 0; }, "nothing costs");
+  expect_refused([](auto& task) { task.actuators[0].weight = -1; }, "is negative");
+  expect_refused([](auto& task) { task.duration_is_free = true; }, "may grow for ever");
+  expect_refused([](auto& task) { task.duration = 0; }, "is not positive");
+  expect_refused([](auto& task) { task.stages = 1; }, "at least two");
+  expect_refused([](auto& task) { task.end.places = {{HingedBar::of_bar, 0, 0.7}}; }, "do not reach the end");
+  expect_refused(
+      [](auto& task) {
+        task.end.places = {{HingedBar::of_bar, 2, 0}};
+        task.end.velocities = {{0, 0, 1}};
+      },
+      "do not allow the velocities");
+  const Body bar{{1}, {}};
+  expect_refused(with([bar]<class S>(BasicScene<S>& scene) { scene.damp(bar, S(1), S(1)); }), "drag");
+  expect_refused(with([]<class S>(BasicScene<S>& scene) { scene.add(BasicBlade<S>{{HingedBar::of_bar}}); }),
+                 "joints on velocities");
+}
+
+// Of an end, too, that nothing outside can bring about.
+TEST(ControlledBodies, AnotherMomentumThanTheMotionKeepsIsRefused) {
+  SceneControl task = control_of_scene(Cat{});
+  task.actuators = {{"pitch"}, {"roll"}, {"twist"}};
+  for (int body = 0; body < 2; ++body) task.end.velocities.push_back({body, 0, 0});
+  EXPECT_NO_THROW(ControlledScene{task});
+  for (SceneEnd::Velocity& each : task.end.velocities) each.value = 1;
+  EXPECT_THROW(ControlledScene{task}, std::invalid_argument);
+  task.end.velocities.clear();
+  for (const int body : {0, 1}) task.end.places.push_back({{body}, 0, 0.2});
+  EXPECT_THROW(ControlledScene{task}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lagroid

@@ -1,0 +1,191 @@
+// Derivatives of long chains: the laws of those of small scenes, from as few evaluations as a chain of ten takes; and
+// of bodies that an effect brings together on the way only.
+#include <lagroid/solvers/sensitivity/propagate.hpp>
+#include <lagroid/solvers/testing/sensitivity_laws.hpp>
+#include <lagroid/systems/multibody/effects.hpp>
+#include <lagroid/systems/multibody/joints.hpp>
+#include <lagroid/systems/multibody/sensitivity/linearised_scene.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace lagroid::multibody {
+namespace {
+
+template <class S> using Vec3 = Vector<S, 3>;
+
+/// Bobs on rods, slanting and wound a little; the numbers are their masses, then the lengths.
+struct Chain {
+  int links;
+  std::vector<double> numbers{};
+  explicit Chain(int count) : links(count) {
+    for (int i = 0; i < links; ++i) numbers.push_back((1 + 0.1 * (i % 3)) / links);
+    for (int i = 0; i < links; ++i) numbers.push_back((1 + 0.05 * (i % 4)) / links);
+  }
+  template <class S> BasicScene<S> operator()(const std::vector<S>& x) const {
+    BasicScene<S> scene;
+    Vec3<S> place = Vec3<S>::Zero();
+    Site last = scene.ground(place);
+    for (int i = 0; i < links; ++i) {
+      const S &mass = x[std::size_t(i)], &length = x[std::size_t(links + i)];
+      const double turn = 0.6 * i / links;
+      const Vec along(std::sin(1.2) * std::cos(turn), std::sin(1.2) * std::sin(turn), -std::cos(1.2));
+      for (int k = 0; k < 3; ++k) place(k) += length * along(k);
+      const Body bob = scene.point_mass(mass, place, Vec3<S>::Zero());
+      scene.add(BasicRod<S>{{last, bob.centre}, length});
+      scene.add(BasicConstantForce<S>{{bob.centre}, Vec3<S>(S(0), S(0), mass * -9.81)});
+      last = bob.centre;
+    }
+    return scene;
+  }
+};
+
+/// A spring that is slack below its length: what it does not hold at the start it does later.
+template <class S> struct Cable {
+  std::array<Site, 2> sites;
+  S stiffness, length;
+  S energy(const BasicConfiguration<S>& at) const {
+    const S stretch = (at(sites[1]) - at(sites[0])).norm() - length;
+    return value_of(stretch) > 0 ? 0.5 * stiffness * stretch * stretch : S(0);
+  }
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const {
+    const Vec3<S> d = at(sites[1]) - at(sites[0]);
+    const S size = d.norm(), stretch = size - length;
+    if (value_of(stretch) <= 0) return;
+    const Vec3<S> pull = (stiffness * stretch / size) * d;
+    f(sites[0]) += pull;
+    f(sites[1]) -= pull;
+  }
+};
+/// Masses in a row that fly apart; cables between them, one after another, become taut.
+struct Cables {
+  std::vector<double> numbers{3.0, 1.15, 0.5};
+  template <class S> BasicScene<S> operator()(const std::vector<S>& x) const {
+    BasicScene<S> scene;
+    std::vector<Body> bobs;
+    for (int i = 0; i < 5; ++i)
+      bobs.push_back(scene.point_mass(x[2] * (1.0 + i), {S(1.0 * i), S(0.02 * i * i), S(0)},
+                                      {S(0.4 * i * i), S(0.1), S(0.3 * i)}));
+    for (std::size_t i = 0; i + 1 < bobs.size(); ++i)
+      scene.add(Cable<S>{{bobs[i].centre, bobs[i + 1].centre}, x[0], x[1]});
+    return scene;
+  }
+};
+
+constexpr long steps = 40;
+
+std::vector<std::string> names(std::size_t count) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < count; ++i) out.push_back("number " + std::to_string(i));
+  return out;
+}
+
+VariedNumbers places_and_momenta(const ObservedScene& node) {
+  const auto count = Eigen::Index(node.momentum.size());
+  VariedNumbers out(6 * count);
+  for (Eigen::Index f = 0; f < count; ++f) {
+    out.segment<3>(6 * f) = node.at.x[std::size_t(f)];
+    out.segment<3>(6 * f + 3) = node.momentum[std::size_t(f)];
+  }
+  return out;
+}
+
+template <class Written> LinearisedScene linearised(const Written& write, double h) {
+  return {Multibody(write(write.numbers), h), names(write.numbers.size()), write.numbers, [write](const auto& x) {
+            return WrittenScene{write(x), places_and_momenta};
+          }};
+}
+
+/// What those of a run tend to along a direction of the numbers.
+template <class Written>
+Eigen::VectorXd differences(const Written& write, double h, const Eigen::VectorXd& direction, double width) {
+  return laws::detail::extrapolated_difference(
+      [&](double by) {
+        Written other = write;
+        for (std::size_t k = 0; k < other.numbers.size(); ++k) other.numbers[k] += by * direction(Eigen::Index(k));
+        Multibody motion(other(other.numbers), h);
+        for (long k = 0; k < steps; ++k) EXPECT_TRUE(motion.advance().converged()) << "step " << k;
+        const Multibody::Momenta m = motion.momenta();
+        Eigen::VectorXd out(Eigen::Index(6 * m.linear.size()));
+        for (std::size_t f = 0; f < m.linear.size(); ++f) {
+          out.segment<3>(Eigen::Index(6 * f)) = motion.configuration().x[f];
+          out.segment<3>(Eigen::Index(6 * f + 3)) = m.linear[f];
+        }
+        return out;
+      },
+      width, /*widths=*/4);
+}
+
+TEST(ChainGradients, BackwardAreForwardAndWhatDifferencesTendTo) {
+  const Chain write(50);
+  const double h = 4e-4;
+  LinearisedScene motion = linearised(write, h), again = linearised(write, h);
+  const int states = motion.states(), all = states + motion.parameters();
+  const Propagated forward = propagate_forward(again, steps, Eigen::MatrixXd::Identity(all, all));
+  const Propagated backward = propagate_backward(motion, steps, Observed::at_end(), {5});
+  ASSERT_TRUE(forward.converged() && backward.converged());
+  EXPECT_LT((forward.derivatives - backward.derivatives).norm(), 1e-12 * forward.derivatives.norm());
+  for (unsigned k = 0; k < 3; ++k) {
+    std::srand(k);
+    const Eigen::VectorXd direction = Eigen::Map<const Eigen::VectorXd>(write.numbers.data(), motion.parameters())
+                                          .cwiseProduct(Eigen::VectorXd::Random(motion.parameters()));
+    const Eigen::VectorXd exact = backward.derivatives.rightCols(motion.parameters()) * direction;
+    const Eigen::VectorXd by = differences(write, h, direction, 1e-2);
+    EXPECT_LT((by - exact).norm(), 1e-8 * exact.norm());
+  }
+}
+
+TEST(ChainGradients, AreSymplectic) {
+  LinearisedScene motion = linearised(Chain(50), 4e-4);
+  const int n = motion.states() / 2, all = motion.states() + motion.parameters();
+  Eigen::MatrixXd start = Eigen::MatrixXd::Zero(all, 2 * n);
+  start.topRows(2 * n) = motion.allowed_directions();
+  const auto form = [n](const Eigen::MatrixXd& x) {
+    const Eigen::MatrixXd half = x.topRows(n).transpose() * x.middleRows(n, n);
+    return Eigen::MatrixXd(half - half.transpose());
+  };
+  const Eigen::MatrixXd before = form(start);
+  const Propagated run = propagate_forward(motion, steps, start);
+  ASSERT_TRUE(run.converged()) << run.message;
+  EXPECT_LT((form(run.end) - before).norm(), 1e-13 * run.end.topRows(2 * n).squaredNorm());
+}
+
+TEST(ChainGradients, CostAsTheChainIsLong) {
+  struct Cost {
+    int evaluations;
+    long entries;
+  };
+  const auto cost = [](int links) {
+    LinearisedScene motion = linearised(Chain(links), 2e-2 / links);
+    EXPECT_TRUE(motion.advance().converged() && motion.linearise());
+    const auto& step = dynamic_cast<const SparseStep&>(motion.stage(motion.stages() - 1));
+    return Cost{motion.evaluations(), long(step.entries())};
+  };
+  const Cost ten = cost(10), twenty = cost(20), forty = cost(40), eighty = cost(80);
+  EXPECT_LE(ten.evaluations, 4);
+  EXPECT_EQ(eighty.evaluations, ten.evaluations);
+  EXPECT_EQ(forty.entries - twenty.entries, 2 * (twenty.entries - ten.entries));
+  EXPECT_EQ(eighty.entries - forty.entries, 4 * (twenty.entries - ten.entries));
+}
+
+TEST(ChainGradients, SeeWhatBeginsToActOnTheWay) {
+  const Cables write;
+  const double h = 0.02;
+  LinearisedScene motion = linearised(write, h);
+  ASSERT_TRUE(motion.advance().converged() && motion.linearise());
+  const int alone = motion.evaluations();
+  LinearisedScene again = linearised(write, h);
+  const Propagated end = propagate_forward(again, steps, Eigen::MatrixXd::Identity(33, 33));
+  ASSERT_TRUE(end.converged()) << end.message;
+  EXPECT_GT(again.evaluations(), alone);  // bodies that are tied cannot be varied in one direction any more
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::VectorXd by = differences(write, h, Eigen::VectorXd::Unit(3, k), 1e-5);
+    EXPECT_LT((by - end.derivatives.col(30 + k)).norm(), 1e-7 * end.derivatives.col(30 + k).norm()) << k;
+  }
+}
+
+}  // namespace
+}  // namespace lagroid::multibody
