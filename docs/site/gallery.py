@@ -17,7 +17,8 @@ gallery = {
     "Bounds, obstacles and free time": {
         "control/swing_up": [], "control/keep_out": [], "control/fastest_stop": [], "control/shortest_way": [],
         "control/reeds_shepp": [], "control/parallel_parking": [], "control/falling_cat": [], "control/two_link_arm": [],
-        "control/low_thrust": [], "control/low_thrust_coast": [], "control/through_a_gate": [], "control/rolled_ball": []},
+        "control/low_thrust": [], "control/low_thrust_coast": [], "control/through_a_gate": [], "control/rolled_ball": [],
+        "control/arm_of_bodies": [], "control/cat_of_bodies": []},
     "Orbits": {
         "kepler": ["time.steps=2000", "output.every=4"], "figure_eight": ["output.every=40"],
         "pythagorean": ["output.every=20000"], "kepler_controlled": ["time.steps=800"]},

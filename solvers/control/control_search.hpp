@@ -14,6 +14,7 @@
 #include <lagroid/core/capabilities/loops.hpp>
 #include <lagroid/core/matrices/scaling.hpp>
 #include <lagroid/core/scalars/jet.hpp>
+#include <lagroid/solvers/control/search_starts.hpp>
 #include <lagroid/solvers/control/solve_control.hpp>
 
 #include <algorithm>
@@ -177,28 +178,9 @@ ControlSearch<Sys> search_control(
     const ControlSolver<std::type_identity_t<Sys>>& solve =
         [](const auto&... with) { return solve_control(with...); }) {
   ControlSearch<Sys> found;
-  constexpr int least = 100;
-  int slowest = 0;
-  for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
-    ControlOptions solver = options.solver;
-    if (slowest > 0 && options.patience > 0)
-      solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
-    ControlSolution<Sys> solution = solve(task, control_guess(task, stages, i, options), solver);
-    ++found.outcomes[solution.report.status];
-    found.iterations += solution.report.iterations;
-    if (!solution.report.converged()) {
-      if (i == 0 || !(found.best_failure.report.violation <= solution.report.violation))
-        found.best_failure = std::move(solution);
-      continue;
-    }
-    slowest = std::max(slowest, solution.report.iterations);
-    const auto same = [&](const ControlSolution<Sys>& known) {
-      return std::abs(known.report.cost - solution.report.cost) <= 1e-7 * (1e-6 + std::abs(solution.report.cost));
-    };
-    if (std::none_of(found.minima.begin(), found.minima.end(), same)) found.minima.push_back(std::move(solution));
-  }
-  std::sort(found.minima.begin(), found.minima.end(),
-            [](const auto& a, const auto& b) { return a.report.cost < b.report.cost; });
+  search_starts(found, options, keep_going, [&](int start, const ControlOptions& solver) {
+    return solve(task, control_guess(task, stages, start, options), solver);
+  });
   return found;
 }
 

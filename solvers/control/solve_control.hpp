@@ -12,8 +12,7 @@
 /// iterate. What converged is carried on to its active inequalities, where they can be told (`crossover`); else it is
 /// the interior point's.
 
-#include <lagroid/solvers/control/interior_point.hpp>
-#include <lagroid/solvers/control/optimality/crossover.hpp>
+#include <lagroid/solvers/control/optimality/crossed_solution.hpp>
 #include <lagroid/solvers/control/transcription_of.hpp>
 
 #include <fmt/format.h>
@@ -73,29 +72,19 @@ ControlSolution<Sys> solve_control(const ControlTask<Sys>& task, ControlTrajecto
                                    const ControlOptions& options = {}) {
   require_control_task(task, start);
   TranscriptionOf<Sys> transcription(task, std::move(start));
-  InteriorPoint solver(transcription, options);
   ControlSolution<Sys> out;
-  out.report = solver.solve();
-  const auto keep = [&](const auto& solved) {
+  const CrossedSolution solved = solve_and_cross(transcription, options, [&](const auto& by) {
     const auto rows = [](const StageRows& of, long stages) {
       std::vector<std::vector<double>> all;
       for (long k = 0; k < stages; ++k) all.emplace_back(of[k], of[k] + of.length());
       return all;
     };
     out.trajectory = transcription.trajectory();
-    out.costates = rows(solved.costates(), transcription.sizes().stages);
-    out.inequality_multipliers = rows(solved.inequality_multipliers(), transcription.sizes().stages);
-  };
-  keep(solver);
-  if (!options.crossover || !out.report.converged()) return out;
-  Crossover crossover(transcription);
-  out.crossover = crossover.cross(solver.costates(), solver.inequality_multipliers());
-  if (!out.crossover.crossed()) return out;
-  keep(crossover);
-  out.report.cost = out.crossover.cost;
-  out.report.stationarity = out.crossover.after.stationarity;
-  out.report.violation = out.crossover.after.violation;
-  out.report.complementarity = out.crossover.after.complementarity;
+    out.costates = rows(by.costates(), transcription.sizes().stages);
+    out.inequality_multipliers = rows(by.inequality_multipliers(), transcription.sizes().stages);
+  });
+  out.report = solved.report;
+  out.crossover = solved.crossover;
   return out;
 }
 

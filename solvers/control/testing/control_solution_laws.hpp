@@ -66,17 +66,13 @@ inline Law order_law(const double (&costs)[3], long stages, bool has_active_ineq
                      all_solved ? spread * double(stages) * double(stages) / size : HUGE_VAL, 100, 3);
 }
 
-}  // namespace detail
-
-template <class Sys>
-LawReport control_solution_laws(const ControlTask<Sys>& task, const ControlSolution<Sys>& solution,
-                                const ControlOptions& options = {}, int samples = 20, std::uint64_t seed = 1) {
-  TranscriptionOf<Sys> transcription(task, solution.trajectory);
+/// Of a solution and of two finer grids: `finer(options)` is the report of the next one, from the one before.
+template <class Finer>
+LawReport solution_laws(Transcription& transcription, const ControlReport& solved, const StageRows& lambda,
+                        const StageRows& z, const ControlOptions& options, int samples, std::uint64_t seed,
+                        const Finer& finer) {
   const TranscriptionSizes& sizes = transcription.sizes();
-  const StageRows lambda = detail::stage_rows(solution.costates, sizes.equality);
-  const StageRows z = detail::stage_rows(solution.inequality_multipliers, sizes.inequality);
   LawReport report = optimality_laws(transcription, lambda, z, samples, seed);
-
   StageValues values(sizes);
   StageDerivatives derivatives(sizes);
   TrajectoryDisplacement gradient(sizes);
@@ -84,21 +80,36 @@ LawReport control_solution_laws(const ControlTask<Sys>& task, const ControlSolut
   transcription.derivatives(lambda, z, derivatives);
   const KktResidual left = kkt_residual(transcription, values, derivatives, lambda, z, gradient);
   report.laws.push_back(
-      detail::control_law("the KKT residual vanishes", std::max(left.stationarity, left.violation), 1e-10, 1));
+      control_law("the KKT residual vanishes", std::max(left.stationarity, left.violation), 1e-10, 1));
 
-  double costs[3] = {solution.report.cost};
   bool has_active = false;
   for (std::size_t i = 0; i < z.numbers().size(); ++i)
     has_active = has_active || z.numbers()[i] > -values.inequality.numbers()[i];
-  ControlSolution<Sys> finer = solution;
   ControlOptions near = options;  // a large barrier parameter would lead away
   near.first_barrier = std::min(options.first_barrier, options.resumed_barrier);
+  double costs[3] = {solved.cost};
   for (double* cost : {costs + 1, costs + 2}) {
-    finer = solve_control(task, detail::halved(task, finer.trajectory), near);
-    *cost = finer.report.converged() ? finer.report.cost : HUGE_VAL;
+    const ControlReport next = finer(near);
+    *cost = next.converged() ? next.cost : HUGE_VAL;
   }
-  report.laws.push_back(detail::order_law(costs, sizes.stages, has_active));
+  report.laws.push_back(order_law(costs, sizes.stages, has_active));
   return report;
+}
+
+}  // namespace detail
+
+template <class Sys>
+LawReport control_solution_laws(const ControlTask<Sys>& task, const ControlSolution<Sys>& solution,
+                                const ControlOptions& options = {}, int samples = 20, std::uint64_t seed = 1) {
+  TranscriptionOf<Sys> transcription(task, solution.trajectory);
+  const TranscriptionSizes& sizes = transcription.sizes();
+  ControlSolution<Sys> finer = solution;
+  return detail::solution_laws(transcription, solution.report, detail::stage_rows(solution.costates, sizes.equality),
+                               detail::stage_rows(solution.inequality_multipliers, sizes.inequality), options, samples,
+                               seed, [&](const ControlOptions& near) {
+                                 finer = solve_control(task, detail::halved(task, finer.trajectory), near);
+                                 return finer.report;
+                               });
 }
 
 }  // namespace lagroid::laws

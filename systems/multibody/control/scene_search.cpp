@@ -1,5 +1,6 @@
 #include <lagroid/systems/multibody/control/scene_search.hpp>
 
+#include <lagroid/solvers/control/search_starts.hpp>
 #include <lagroid/systems/multibody/control/arrow_momenta.hpp>
 
 #include <algorithm>
@@ -104,52 +105,23 @@ ScenePath halved(ControlledScene& scene, const ScenePath& path) {
 
 SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const ControlOptions& options) {
   SceneTranscription transcription(scene, std::move(start));
-  InteriorPoint solver(transcription, options);
   SceneSolution out;
-  out.report = solver.solve();
-  const auto keep = [&](const auto& solved) {
+  const CrossedSolution solved = solve_and_cross(transcription, options, [&](const auto& by) {
     out.path = transcription.path();
-    out.costates = solved.costates();
-    out.inequality_multipliers = solved.inequality_multipliers();
-  };
-  keep(solver);
-  if (!options.crossover || !out.report.converged()) return out;
-  Crossover crossover(transcription);
-  out.crossover = crossover.cross(solver.costates(), solver.inequality_multipliers());
-  if (!out.crossover.crossed()) return out;
-  keep(crossover);
-  out.report.cost = out.crossover.cost;
-  out.report.stationarity = out.crossover.after.stationarity;
-  out.report.violation = out.crossover.after.violation;
-  out.report.complementarity = out.crossover.after.complementarity;
+    out.costates = by.costates();
+    out.inequality_multipliers = by.inequality_multipliers();
+  });
+  out.report = solved.report;
+  out.crossover = solved.crossover;
   return out;
 }
 
 SceneSearch search_scene(ControlledScene& scene, const SceneSearchOptions& options,
                          const std::function<bool(int)>& keep_going) {
-  constexpr int least = 100;
   SceneSearch found;
-  int slowest = 0;
-  for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
-    ControlOptions solver = options.solver;
-    if (slowest > 0 && options.patience > 0)
-      solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
-    SceneSolution solution = solve_scene(scene, scene_guess(scene, i, options), solver);
-    ++found.outcomes[solution.report.status];
-    found.iterations += solution.report.iterations;
-    if (!solution.report.converged()) {
-      if (i == 0 || !(found.best_failure.report.violation <= solution.report.violation))
-        found.best_failure = std::move(solution);
-      continue;
-    }
-    slowest = std::max(slowest, solution.report.iterations);
-    const auto same = [&](const SceneSolution& known) {
-      return std::abs(known.report.cost - solution.report.cost) <= 1e-7 * (1e-6 + std::abs(solution.report.cost));
-    };
-    if (std::none_of(found.minima.begin(), found.minima.end(), same)) found.minima.push_back(std::move(solution));
-  }
-  std::sort(found.minima.begin(), found.minima.end(),
-            [](const auto& a, const auto& b) { return a.report.cost < b.report.cost; });
+  search_starts(found, options, keep_going, [&](int start, const ControlOptions& solver) {
+    return solve_scene(scene, scene_guess(scene, start, options), solver);
+  });
   return found;
 }
 

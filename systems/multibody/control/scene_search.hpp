@@ -9,8 +9,7 @@
 /// their motion. Requires what ControlledScene requires (std::invalid_argument otherwise). Returns the distinct
 /// solutions, cheapest first, and how every start ended. The same seed finds the same.
 
-#include <lagroid/solvers/control/interior_point.hpp>
-#include <lagroid/solvers/control/optimality/crossover.hpp>
+#include <lagroid/solvers/control/optimality/crossed_solution.hpp>
 #include <lagroid/systems/multibody/control/scene_transcription.hpp>
 
 #include <cstdint>

@@ -1,0 +1,48 @@
+#pragma once
+/// One start after another of an optimal control problem, until there are enough: what each found is sorted in.
+///
+///     search_starts(found, options, [](int) { return true; }, [&](int start, const ControlOptions& solver) {
+///       return solve_control(task, control_guess(task, stages, start, options), solver);
+///     });
+///
+/// `found` has `minima`, `best_failure`, `outcomes` and `iterations` (ControlSearch), `options` has `starts`,
+/// `patience` and the `solver`'s (ControlSearchOptions). A start is given up after `patience` times the iterations of
+/// the slowest that has converged, at least a hundred; zero: none is. Solutions of the same cost to 1e-7 are the same.
+
+#include <lagroid/solvers/control/interior_point.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace lagroid {
+
+template <class Found, class Options, class Solve>
+void search_starts(Found& found, const Options& options, const std::function<bool(int start)>& keep_going,
+                   const Solve& solve) {
+  constexpr int least = 100;
+  int slowest = 0;
+  for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
+    ControlOptions solver = options.solver;
+    if (slowest > 0 && options.patience > 0)
+      solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
+    auto solution = solve(i, solver);
+    ++found.outcomes[solution.report.status];
+    found.iterations += solution.report.iterations;
+    if (!solution.report.converged()) {
+      if (i == 0 || !(found.best_failure.report.violation <= solution.report.violation))
+        found.best_failure = std::move(solution);
+      continue;
+    }
+    slowest = std::max(slowest, solution.report.iterations);
+    const auto same = [&](const auto& known) {
+      return std::abs(known.report.cost - solution.report.cost) <= 1e-7 * (1e-6 + std::abs(solution.report.cost));
+    };
+    if (std::none_of(found.minima.begin(), found.minima.end(), same)) found.minima.push_back(std::move(solution));
+  }
+  std::sort(found.minima.begin(), found.minima.end(),
+            [](const auto& a, const auto& b) { return a.report.cost < b.report.cost; });
+}
+
+}  // namespace lagroid
