@@ -121,6 +121,18 @@ class Scratch {
   fs::path path;
 };
 
+/// The sentence of a requirement that failed, as g++ or clang tells it; empty in another line.
+std::string requirement_in(const std::string& line) {
+  for (const std::string_view failed : {"static assertion failed", "static_assert failed"})
+    if (const std::size_t at = line.find(failed); at != std::string::npos) {
+      const std::string told = line.substr(at + failed.size());  // `: words`, or `due to requirement 'x' "words"`
+      const std::size_t quoted = told.find('"');
+      if (quoted != std::string::npos) return told.substr(quoted + 1, told.rfind('"') - quoted - 1);
+      return told.substr(std::min(told.size(), told.find(": ") + 2));
+    }
+  return "";
+}
+
 /// What the compiler says, from its first error in the user's file on, or from the first line that names the file;
 /// after the sentence of a requirement that failed.
 std::string from_the_users_line(const std::string& said, const fs::path& source) {
@@ -133,13 +145,13 @@ std::string from_the_users_line(const std::string& said, const fs::path& source)
       return std::ranges::all_of(words, [&](std::string_view word) { return line.find(word) != std::string::npos; });
     });
   };
-  constexpr std::string_view assertion = "static assertion failed: ";
-  const auto failed = with({assertion});
+  const auto failed =
+      std::ranges::find_if(lines, [](const std::string& line) { return !requirement_in(line).empty(); });
   auto from = failed == lines.end() ? with({file, "error:"}) : lines.end();
   if (from == lines.end()) from = with({file});
   if (from == lines.end()) from = lines.begin();
   constexpr std::size_t enough = 6000;
-  std::string out = failed == lines.end() ? "" : failed->substr(failed->find(assertion) + assertion.size()) + "\n";
+  std::string out = failed == lines.end() ? "" : requirement_in(*failed) + "\n";
   for (; from != lines.end() && out.size() < enough; ++from) out += *from + "\n";
   return from == lines.end() ? out : out + "(and more)\n";
 }

@@ -132,6 +132,25 @@ template <class Sys> struct ControlPhase {
   std::optional<ArrowOf<G>> guess{};  ///< from the first object of the boundary to about where it ends
 };
 
+/// u_control <= a phase's upper bound (sign 1) or >= its lower bound (sign -1).
+template <class Sys> struct PhaseControlBound {
+  int control;
+  double sign;
+  double of(const ControlPhase<Sys>& phase) const { return sign > 0 ? phase.upper(control) : phase.lower(control); }
+  bool holds(const ControlPhase<Sys>& phase) const {
+    return std::isfinite(of(phase)) && phase.lower(control) < phase.upper(control);
+  }
+};
+/// log(T / longest) <= 0 (sign 1) or log(shortest / T) <= 0 of a phase whose duration is free, in its first stage.
+template <class Sys> struct PhaseDurationBound {
+  double sign;
+  double of(const ControlPhase<Sys>& phase) const { return sign > 0 ? phase.longest : phase.shortest; }
+  bool holds(const ControlPhase<Sys>& phase) const {
+    return phase.duration_is_free && (sign > 0 ? std::isfinite(phase.longest) : phase.shortest > 0);
+  }
+  double value(const ControlPhase<Sys>& phase, double duration) const { return sign * std::log(duration / of(phase)); }
+};
+
 /// What is to be solved: a system between two ends, in one phase or several.
 template <class Sys> struct ControlTask {
   using G = typename Sys::GroupoidType;

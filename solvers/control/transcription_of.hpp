@@ -41,11 +41,11 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     for (bool free : free_end_) end_is_fixed_ = end_is_fixed_ && !free;
     for (int i = 0; i < Sys::controls; ++i)
       for (const double sign : {1.0, -1.0}) {
-        const auto is_bounded = [&](const auto& phase) { return Bound{i, sign}.holds(phase); };
+        const auto is_bounded = [&](const auto& phase) { return PhaseControlBound<Sys>{i, sign}.holds(phase); };
         if (std::any_of(phases_.begin(), phases_.end(), is_bounded)) bounds_.push_back({i, sign});
       }
     for (const double sign : {1.0, -1.0}) {
-      const auto is_bounded = [&](const auto& phase) { return DurationBound{sign}.holds(phase); };
+      const auto is_bounded = [&](const auto& phase) { return PhaseDurationBound<Sys>{sign}.holds(phase); };
       if (std::any_of(phases_.begin(), phases_.end(), is_bounded)) duration_bounds_.push_back({sign});
     }
     sizes_.node = n;
@@ -56,7 +56,8 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       TranscriptionPhase& phase = sizes_.phases.emplace_back();
       phase.end = (p == 0 ? 0 : sizes_.phases[p - 1].end) + start.phases[p].stages;
       phase.duration_is_free = phases_[p].duration_is_free;
-      for (const Bound& each : bounds_) phase.bounds.push_back({each.control, each.holds(phases_[p]) ? each.sign : 0});
+      for (const PhaseControlBound<Sys>& each : bounds_)
+        phase.bounds.push_back({each.control, each.holds(phases_[p]) ? each.sign : 0});
       for (int i = 0; i < Sys::controls; ++i) {
         if (phases_[p].lower(i) < phases_[p].upper(i)) continue;
         phase.control_is_fixed.resize(Sys::controls);
@@ -214,26 +215,6 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   /// What an inequality is that a phase has not: it holds.
   static constexpr double not_there = -1;
 
-  /// u_control <= a phase's upper bound (sign 1) or >= its lower bound (sign -1).
-  struct Bound {
-    int control;
-    double sign;
-    double of(const ControlPhase<Sys>& phase) const { return sign > 0 ? phase.upper(control) : phase.lower(control); }
-    bool holds(const ControlPhase<Sys>& phase) const {
-      return std::isfinite(of(phase)) && phase.lower(control) < phase.upper(control);
-    }
-  };
-  /// log(T / longest) <= 0 (sign 1) or log(shortest / T) <= 0 of a phase whose duration is free, in its first stage.
-  struct DurationBound {
-    double sign;
-    double of(const ControlPhase<Sys>& phase) const { return sign > 0 ? phase.longest : phase.shortest; }
-    bool holds(const ControlPhase<Sys>& phase) const {
-      return phase.duration_is_free && (sign > 0 ? std::isfinite(phase.longest) : phase.shortest > 0);
-    }
-    double value(const ControlPhase<Sys>& phase, double duration) const {
-      return sign * std::log(duration / of(phase));
-    }
-  };
   bool begins(long stage, std::size_t phase) const { return stage == (phase == 0 ? 0 : sizes_.phases[phase - 1].end); }
   /// psi of a node, in a row of the stage that ends there; of the first, in stage 0.
   struct PlacedCondition {
@@ -503,19 +484,16 @@ template <class Sys> class TranscriptionOf final : public Transcription {
 
   ControlTask<Sys> task_;
   std::vector<ControlPhase<Sys>> phases_;
-  std::vector<bool> free_start_;
-  std::vector<bool> free_end_;
+  std::vector<bool> free_start_, free_end_;
   bool start_is_free_ = false;
   bool end_is_fixed_ = true;
-  std::vector<DurationBound> duration_bounds_;
-  std::vector<Bound> bounds_;
+  std::vector<PhaseDurationBound<Sys>> duration_bounds_;
+  std::vector<PhaseControlBound<Sys>> bounds_;
   std::vector<PlacedCondition> conditions_;
   TranscriptionSizes sizes_;
-  Standing now_;
-  Standing tried_;
+  Standing now_, tried_;
   bool has_tried_ = false;  // since it stands there
-  mutable std::vector<double> condition_rows_;
-  mutable std::vector<double> condition_hessian_;
+  mutable std::vector<double> condition_rows_, condition_hessian_;
 };
 
 }  // namespace lagroid

