@@ -256,13 +256,14 @@ TEST_F(PendulumChains, RattleKeepsWhatItPromises) {
     EXPECT_EQ(entry(result, "vertical angular momentum").at("verdict"), "kept");
     return entry(result, "energy");
   };
-  // Where the motion is chaotic it is chance whether the largest errors come late.
-  EXPECT_LT(kept("").at("drift"), 0.5);
-  const Json energy = kept(
-      " --set initial.theta=[2.9,2.8,2.9] --set "
-      "initial.angular_velocities=[[0.1,0.2,0.1],[0.1,-0.2,0.1],[0,0.2,-0.1]]");
-  EXPECT_EQ(energy.at("verdict"), "bounded");
-  EXPECT_LT(energy.at("drift"), 1e-3);
+  const auto bounded = [&](const Json& energy, double most) {
+    EXPECT_EQ(energy.at("verdict"), "bounded");
+    EXPECT_LT(energy.at("drift"), most);
+  };
+  bounded(kept(""), 0.15);
+  bounded(kept(" --set initial.theta=[2.9,2.8,2.9] --set "
+               "initial.angular_velocities=[[0.1,0.2,0.1],[0.1,-0.2,0.1],[0,0.2,-0.1]]"),
+          1e-3);
 }
 
 /// In any unit of mass a chain is judged alike, and where masses leave no digits to energy and momentum that is said.

@@ -312,7 +312,10 @@ function listen() {
     study.begin(state.scene, asked(own).settings);
   });
   element("export").addEventListener("click", () => ask({ kind: "export", place: 0 }));
-  element("save").addEventListener("click", () => save("scene.toml", "application/toml", (state.settings.size > 0 || state.first !== own) && whole ? whole : sceneText()));
+  element("save").addEventListener("click", () => {
+    const isChanged = state.settings.size > 0 || state.first !== own;
+    save("scene.toml", "application/toml", isChanged && whole ? whole : sceneText());
+  });
   element("png").addEventListener("click", async () => {
     const canvases = [...document.querySelectorAll("figure canvas, #stage canvas")];
     if (canvases.length) save("lagroid.png", "image/png", await pasted(canvases));

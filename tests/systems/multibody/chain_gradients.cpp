@@ -1,5 +1,7 @@
 // Derivatives of long chains: the laws of those of small scenes, from as few evaluations as a chain of ten takes; and
 // of bodies that an effect brings together on the way only.
+#include "number_names.hpp"
+
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 #include <lagroid/solvers/testing/sensitivity_laws.hpp>
 #include <lagroid/systems/multibody/effects.hpp>
@@ -76,12 +78,6 @@ struct Cables {
 };
 
 constexpr long steps = 40;
-
-std::vector<std::string> names(std::size_t count) {
-  std::vector<std::string> out;
-  for (std::size_t i = 0; i < count; ++i) out.push_back("number " + std::to_string(i));
-  return out;
-}
 
 VariedNumbers places_and_momenta(const ObservedScene& node) {
   const auto count = Eigen::Index(node.momentum.size());

@@ -1,5 +1,7 @@
 // Exact derivatives of runs of scenes of bodies: against extrapolated differences of the motion itself, forward against
 // backward, and the symplectic form.
+#include "number_names.hpp"
+
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 #include <lagroid/solvers/testing/sensitivity_laws.hpp>
@@ -175,12 +177,6 @@ struct Steered {
 
 constexpr double h = 0.02;
 constexpr long steps = 12;
-
-std::vector<std::string> names(std::size_t count) {
-  std::vector<std::string> out;
-  for (std::size_t i = 0; i < count; ++i) out.push_back("number " + std::to_string(i));
-  return out;
-}
 
 /// Places, attitudes, momenta and energies of all that moves.
 VariedNumbers all_of_it(const ObservedScene& node) {

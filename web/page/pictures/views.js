@@ -3,7 +3,7 @@
 import { mostViews } from "../link.js";
 import { Plot } from "./plot.js";
 
-export const title = ({ x, y, through }) => {
+const title = ({ x, y, through }) => {
   if (!through) return `${y} over ${x}`;
   const { column, value, direction } = through;
   return `${y} over ${x} where ${column} ${{ rising: "rises", falling: "falls", both: "passes" }[direction]} through ${value}`;
@@ -64,7 +64,10 @@ export class Views {
     this.form.querySelector("#through").hidden = within.length === 0;
   }
 
-  /** `runs` of one method or two: {columns, last, sections}; phase plots have the last rows, if there are many; also what the scene itself has of sections. */
+  /**
+   * `runs` of one method or two: {columns, last, sections}; phase plots have the last rows, if there are many; also what
+   * the scene itself has of sections.
+   */
   draw(runs) {
     const all = this.state.views;
     const drawn = [
