@@ -1,32 +1,15 @@
 #include "control_scene.hpp"
 
-#include "search_keys.hpp"
-
-#include <lagroid/solvers/control/ipopt/has_ipopt.hpp>
-#include <lagroid/solvers/methods/declared_methods.hpp>
-#include <lagroid/solvers/missing_library.hpp>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <stdexcept>
 
 namespace lagroid::app {
 
 namespace {
-
-/// [solver] method of an optimal control problem; the first is the default.
-constexpr std::array<Word<ControlMethod>, 2> control_words{
-    {{"interior_point", ControlMethod::interior_point}, {"ipopt", ControlMethod::ipopt}}};
-
-KeyOf<OneOf> method_key() {
-  const auto words = words_of(control_words);
-  return {
-      "method", {words}, "", "on the manifold of trajectories; by IPOPT in a chart of it, as a check", words.front()};
-}
 
 const KeyOf<Whole> samples_key{"samples", {1, 100'000'000}, "", "how often the problem is solved anew"};
 const KeyOf<Number> disturbance_key{"disturbance",
@@ -186,9 +169,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
     scene.fail("horizon", "each [[phase]] has a duration and stages of its own; leave out [horizon]");
   }
   const Section solver = scene.section_or_empty("solver");
-  out.method = choice_of(control_words, read_key(solver, method_key()));
-  if (out.method == ControlMethod::ipopt && !has_ipopt())
-    solver.fail("method", MissingLibrary("\"ipopt\"", "IPOPT", "coinor-libipopt-dev").what());
+  out.method = read_method(solver);
   read_search(solver, out.search);
   if (scene.has("loop")) {
     if (!out.phases.empty()) scene.fail("loop", "looks ahead in one phase; leave out [loop], or give [horizon]");
@@ -216,8 +197,6 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
   for (const std::string& control : problem.controls()) bounds.push_back(bound_key(control));
   std::vector<Key> through;
   for (const std::string& state : states) through.push_back(phase_keys::through(state));
-  std::vector<Key> solver = search_keys();
-  solver.insert(solver.begin(), method_key());
   const Table phase{{phase_keys::name, phase_keys::duration, phase_keys::free, phase_keys::range, phase_keys::stages,
                      phase_keys::constraints,
                      optional_table("through", {through}, "numbers of the state where it ends"), on_key("on"),
@@ -236,7 +215,7 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
                        "that of the phases"},
           KeyOf<Tables>{"phase", {phase}, "", "one after another, in place of the horizon", {}, "one"},
           optional_table("bounds", {bounds}, "of the controls"),
-          optional_table("solver", {solver}, "of the search"),
+          optional_table("solver", {search_keys()}, "of the search"),
           optional_table("loop", {{samples_key, disturbance_key, loop_iterations_key, loop_tolerance_key, usable_key}},
                          "the problem solved anew at every sample, of the length of a stage")};
 }

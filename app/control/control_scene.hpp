@@ -4,6 +4,7 @@
 
 #include "control_problem.hpp"
 #include "scene_loop.hpp"
+#include "search_keys.hpp"
 #include "state_condition.hpp"
 
 #include <cmath>
@@ -15,8 +16,6 @@
 #include <vector>
 
 namespace lagroid::app {
-
-enum class ControlMethod { interior_point, ipopt };
 
 using ControlBounds = std::vector<std::pair<double, double>>;  ///< of each control; twice the same: it is fixed
 

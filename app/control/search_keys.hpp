@@ -4,7 +4,11 @@
 #include "../keys/key.hpp"
 
 #include <lagroid/solvers/control/control_search.hpp>
+#include <lagroid/solvers/control/ipopt/has_ipopt.hpp>
+#include <lagroid/solvers/methods/declared_methods.hpp>
+#include <lagroid/solvers/missing_library.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -29,7 +33,27 @@ inline const KeyOf<Number> patience_key{
     "converged, at least 100; 0: none is",
     ControlSearchOptions().patience};
 
-inline std::vector<Key> search_keys() { return {starts_key, seed_key, tolerance_key, iterations_key, patience_key}; }
+enum class ControlMethod { interior_point, ipopt };
+/// [solver] method; the first is the default.
+inline constexpr std::array<Word<ControlMethod>, 2> control_words{
+    {{"interior_point", ControlMethod::interior_point}, {"ipopt", ControlMethod::ipopt}}};
+inline KeyOf<OneOf> method_key() {
+  const auto words = words_of(control_words);
+  return {
+      "method", {words}, "", "on the manifold of trajectories; by IPOPT in a chart of it, as a check", words.front()};
+}
+
+inline std::vector<Key> search_keys() {
+  return {method_key(), starts_key, seed_key, tolerance_key, iterations_key, patience_key};
+}
+
+/// Throws SceneError for IPOPT in a build without it.
+inline ControlMethod read_method(const Section& solver) {
+  const ControlMethod method = choice_of(control_words, read_key(solver, method_key()));
+  if (method == ControlMethod::ipopt && !has_ipopt())
+    solver.fail("method", MissingLibrary("\"ipopt\"", "IPOPT", "coinor-libipopt-dev").what());
+  return method;
+}
 
 /// Of a search of any problem.
 template <class Options> void read_search(const Section& solver, Options& out) {

@@ -5,9 +5,12 @@
 #include "../bodies/scene_picture.hpp"
 #include "../bodies/scene_run.hpp"
 #include "../reading/kinds.hpp"
+#include "event_gradient.hpp"
 #include "system_gradients.hpp"
 
+#include <lagroid/run/events/motion_through_events.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
+#include <lagroid/systems/multibody/sensitivity/linearised_controlled_scene.hpp>
 #include <lagroid/systems/multibody/sensitivity/linearised_scene.hpp>
 
 #include <fmt/format.h>
@@ -21,6 +24,7 @@ namespace lagroid::app {
 
 namespace {
 
+using multibody::LinearisedControlledScene;
 using multibody::LinearisedScene;
 using multibody::Multibody;
 using multibody::ObservedScene;
@@ -57,23 +61,25 @@ template <class Put> void each_column(const BasicNamedBody<V>& b, const Observed
         [&](const ObservedScene& n) { return alone(momentum(n)(2) / n.model.factors.inertia[place(n)](2)); });
 }
 
-multibody::VariedNumbers observed(const VariedBodies& bodies, const ObservedScene& node) {
+/// Of steps that vary with the time.
+multibody::VariedNumbers observed(const VariedBodies& bodies, const ObservedScene& node, bool timed) {
   std::vector<V> out;
   for (const BasicNamedBody<V>& b : bodies.bodies)
     each_column(b, &node, [&](const GradientName&, const V& value) { out.push_back(value); });
   out.push_back(node.kinetic + node.potential);
+  if (timed) out.push_back(node.at.time);
   return Eigen::Map<const multibody::VariedNumbers>(out.data(), Eigen::Index(out.size()));
 }
 
 /// A scene as a function of numbers in it.
-LinearisedScene::Write write_with(const Section& scene, const std::vector<SceneNumber>& numbers) {
-  return [scene, numbers](const std::vector<V>& x) {
+multibody::WriteScene write_with(const Section& scene, const std::vector<SceneNumber>& numbers, bool timed = false) {
+  return [scene, numbers, timed](const std::vector<V>& x) {
     std::vector<VariedAt> varied;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (!multibody::stays_zero(x[i] - x[i].value)) varied.push_back({numbers[i].path, x[i]});
     const auto bodies = std::make_shared<VariedBodies>(read_varied_scene(scene, varied));
     return multibody::WrittenScene{std::move(bodies->scene),
-                                   [bodies](const ObservedScene& node) { return observed(*bodies, node); },
+                                   [=](const ObservedScene& node) { return observed(*bodies, node, timed); },
                                    bodies->projects};
   };
 }
@@ -111,6 +117,47 @@ void name_start(const Multibody& motion, const VariedBodies& bodies, GradientSub
   }
 }
 
+/// Where among all momenta the first of each three numbers of a body's kick is.
+std::vector<Eigen::Index> places_of_kick(const std::string& body, const Multibody& motion, const VariedBodies& bodies) {
+  std::vector<Eigen::Index> out;
+  for (const BasicNamedBody<V>& b : bodies.bodies) {
+    if (b.name != body) continue;
+    if (b.linear >= 0) out.push_back(3 * Eigen::Index(motion.linear_place(b.linear)));
+    if (b.body.attitude.index >= 0)
+      out.push_back(3 * Eigen::Index(motion.state().momentum.size() + std::size_t(motion(b.body.attitude).index)));
+  }
+  return out;
+}
+
+/// The events of a scene, of the time and of what is observed. Throws std::invalid_argument for one that has no
+/// derivative.
+std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, const std::vector<GradientName>& observed,
+                                           const Multibody& motion, const VariedBodies& bodies) {
+  const auto momenta = Eigen::Index(3 * (motion.state().momentum.size() + motion.state().spin.size()));
+  std::vector<ObservedEvent> out;
+  for (const Event& event : events) {
+    const auto texts = std::make_shared<EventExpressions>(event, observed, int(event.kick.size()), /*switched=*/true);
+    ObservedEvent smooth{.name = event.name,
+                         .when = event.when,
+                         .function = [texts](const VariedVector& seen) { return texts->when(seen); },
+                         .direction = event.direction,
+                         .then = event.then,
+                         .count = event.count};
+    smooth.tolerance = std::max(event.tolerance, smooth.tolerance);
+    if (!event.kick.empty())
+      smooth.kick = [texts, momenta, places = places_of_kick(event.body, motion, bodies)](const VariedVector& seen) {
+        VariedVector by = VariedVector::Constant(momenta, V(0));
+        for (std::size_t k = 0; k < texts->kick.size(); ++k)
+          by(places[k / 3] + Eigen::Index(k % 3)) = texts->kick[k](seen);
+        return by;
+      };
+    for (const std::string& name : event.switch_on) smooth.switches.emplace_back(name, true);
+    for (const std::string& name : event.switch_off) smooth.switches.emplace_back(name, false);
+    out.push_back(std::move(smooth));
+  }
+  return out;
+}
+
 /// Why there is no derivative by a number: scenes with a little more and with a little less of it are none, or joints
 /// that hold would not. Empty where there is one.
 std::string why_not_changed(const Section& scene, const SceneNumber& number,
@@ -142,15 +189,17 @@ std::string why_not_changed(const Section& scene, const SceneNumber& number,
 std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   if (!scene.has(keys::bodies)) return std::nullopt;
   const BodiesScene read = read_bodies(scene, {});
-  if (!read.extent.events.empty())
-    scene.fail("event", "of scenes of bodies there are no derivatives through events; leave the events out");
-  if (read.options.controlled)
-    scene.section("time", "").fail("mode", "of scenes of bodies there are derivatives by equal steps; leave it out");
+  const bool controlled = read.options.controlled;
+  if (controlled && !read.extent.events.empty())
+    scene.fail("event",
+               "of scenes of bodies there are no derivatives through events by controlled steps; leave out the "
+               "events, or time.mode");
   const double step = read.to_check.step;
   const auto begun = [step, options = read.options](const Section& of) { return begin_bodies(of, step, options); };
   const auto begun_singly = [step, options = read.options](const Section& of) {
     multibody::Options single = options;
     single.composition = compositions::single;
+    single.controlled = false;
     return begin_bodies(of, step, single);
   };
   const auto stages = [begun_singly, shares = read.options.composition.coefficients](
@@ -166,6 +215,7 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   for (const BasicNamedBody<V>& b : bodies.bodies)
     each_column(b, nullptr, [&](const GradientName& name, const V&) { out.observed.push_back(name); });
   out.observed.push_back({"energy", "energy"});
+  if (controlled) out.observed.push_back({"time", "t"});
   name_start(motion, bodies, out);
   std::vector<SceneNumber> numbers;
   for (const SceneNumber& number : numbers_to_differentiate(scene)) {
@@ -181,8 +231,9 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   if (tied)
     out.notes.emplace_back(
         "derivatives by the start are along what the joints allow of a displacement and of a momentum");
-  const auto begin = [scene, numbers, begun, stages](const std::vector<std::string>& parameters,
-                                                     const std::vector<Nudge>& nudges) {
+  /// made(motion, names, numbers, write, scene): the motion of the scene that differs, linearised.
+  const auto begun_with = [scene, numbers, begun](const std::vector<std::string>& parameters,
+                                                  const std::vector<Nudge>& nudges, const auto& made) {
     const auto named = [&](const std::string& name) {
       SceneNumber number =
           *std::find_if(numbers.begin(), numbers.end(), [&](const SceneNumber& n) { return n.name == name; });
@@ -201,10 +252,25 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
     for (const Nudge& nudge : nudges)
       if (nudge.parameter.empty()) by(nudge.index) += nudge.by;
     if (!by.isZero(0)) displace(from, by);
-    return std::make_unique<LinearisedScene>(std::move(from), parameters, values_of(chosen),
-                                             write_with(changed, chosen), stages(changed));
+    return made(std::move(from), chosen, changed);
+  };
+  const auto begin = [begun_with, stages](const std::vector<std::string>& parameters,
+                                          const std::vector<Nudge>& nudges) {
+    return begun_with(parameters, nudges,
+                      [&](Multibody from, const std::vector<SceneNumber>& chosen, const Section& changed) {
+                        return std::make_unique<LinearisedScene>(std::move(from), parameters, values_of(chosen),
+                                                                 write_with(changed, chosen), stages(changed));
+                      });
   };
   out.begin = begin;
+  if (controlled)
+    out.begin = [begun_with](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+      return begun_with(parameters, nudges,
+                        [&](Multibody from, const std::vector<SceneNumber>& chosen, const Section& changed) {
+                          return std::make_unique<LinearisedControlledScene>(
+                              std::move(from), parameters, values_of(chosen), write_with(changed, chosen, true));
+                        });
+    };
   if (tied)
     out.begun_by = [begin](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
       const Eigen::MatrixXd allowed = begin({}, nudges)->allowed_directions();
@@ -213,6 +279,27 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
       all.leftCols(allowed.cols()) = allowed;
       return all;
     };
+  if (read.extent.events.empty()) return out;
+  require_events(read.extent.events, *read.motion);
+  const std::vector<ObservedEvent> events = observed_events(read.extent.events, out.observed, motion, bodies);
+  for (const ObservedEvent& event : events) out.events.push_back(event.name);
+  out.begins_through_events = std::none_of(events.begin(), events.end(),
+                                           [](const ObservedEvent& each) { return each.then == Event::Then::stop; });
+  out.begin = [begin, events](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+    return std::make_unique<MotionThroughEvents>(begin(parameters, nudges), events);
+  };
+  out.through_events = [begin, events, begun_by = out.begun_by, steps = out.steps](
+                           const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
+                           ThroughEvents by) {
+    MotionThroughEvents through(begin(parameters, nudges), events);
+    const Eigen::Index states = through.states(), of_numbers = through.parameters();
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(states + of_numbers, states + of_numbers);
+    if (begun_by) directions.topRows(states) = begun_by(parameters, nudges);
+    const Eigen::Index asked = by == ThroughEvents::start_too    ? states + of_numbers
+                               : by == ThroughEvents::parameters ? of_numbers
+                                                                 : 0;
+    return through.run(steps, directions.rightCols(asked), node);
+  };
   return out;
 }
 

@@ -156,30 +156,32 @@ std::vector<std::size_t> which_happened(const EventSensitivities& run) {
 /// The run as far as a node is asked for: one for each node, and one for the rest.
 class Runs {
  public:
-  Runs(const GradientSubject& subject, std::vector<std::string> parameters, std::vector<Nudge> nudges)
-      : subject_(subject), parameters_(std::move(parameters)), nudges_(std::move(nudges)) {}
+  Runs(const GradientSubject& subject, std::vector<std::string> parameters, std::vector<Nudge> nudges, ThroughEvents by)
+      : subject_(subject), parameters_(std::move(parameters)), nudges_(std::move(nudges)), by_(by) {}
   const EventSensitivities& to(long node) {
     const auto found = runs_.find(node);
     if (found != runs_.end()) return found->second;
-    return runs_.emplace(node, subject_.through_events(parameters_, nudges_, node)).first->second;
+    return runs_.emplace(node, subject_.through_events(parameters_, nudges_, node, by_)).first->second;
   }
 
  private:
   const GradientSubject& subject_;
   std::vector<std::string> parameters_;
   std::vector<Nudge> nudges_;
+  ThroughEvents by_;
   std::map<long, EventSensitivities> runs_;
 };
 
 }  // namespace
 
-EventExpressions::EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta)
+EventExpressions::EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta,
+                                   bool switched)
     : when(smooth(event.when, event.name, names_in(observed))) {
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("event \"{}\": {}; leave it out", event.name, why));
   };
   if (event.at != Event::At::zero) refuse("derivatives are of events at zero, not of minima and maxima");
-  if (!event.set.empty() || !event.switch_on.empty() || !event.switch_off.empty())
+  if (!event.set.empty() || (!switched && !(event.switch_on.empty() && event.switch_off.empty())))
     refuse("a run whose system changes on the way has no derivatives here");
   if (event.call) refuse("what it calls has no derivative");
   if (!event.kick.empty() && int(event.kick.size()) != momenta)
@@ -191,7 +193,7 @@ void require_events(const std::vector<Event>& events, Motion& motion) { const Ev
 
 std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject, const GradientTable& table,
                                                      const std::vector<Nudge>& nudges) {
-  Runs runs(subject, {}, nudges);
+  Runs runs(subject, {}, nudges, ThroughEvents::values_alone);
   const EventSensitivities& whole = runs.to(-1);
   if (!whole.converged() || which_happened(whole) != table.happened) return std::nullopt;
   Eigen::VectorXd out(Eigen::Index(table.rows.size()));
@@ -208,7 +210,8 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
                                            const std::vector<std::string>& by, bool check) {
   GradientTable out = table_of(subject, by, check);
   const GradientColumns columns = columns_of(subject, by);
-  Runs runs(subject, names_of(subject, columns), {});
+  Runs runs(subject, names_of(subject, columns), {},
+            columns.start.empty() ? ThroughEvents::parameters : ThroughEvents::start_too);
   const EventSensitivities& whole = runs.to(-1);
   out.steps_solved = whole.steps;
   out.states_kept = 1;

@@ -21,8 +21,9 @@ namespace lagroid::app {
 
 /// The texts of an event of a scene, of the time `t` and of what is observed.
 struct EventExpressions {
-  /// Throws std::invalid_argument for an event that has no derivative, or texts that are none.
-  EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta);
+  /// Throws std::invalid_argument for an event that has no derivative, or texts that are none; whether what it switches
+  /// has one says `switched`.
+  EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta, bool switched = false);
 
   VariedExpression when;
   std::vector<VariedExpression> kick;

@@ -44,6 +44,9 @@ struct BoundaryCost {
   std::function<std::optional<double>(const std::vector<Nudge>&)> again = nullptr;
 };
 
+/// By what a run through events is linearised; a subject may do more than that.
+enum class ThroughEvents { values_alone, parameters, start_too };
+
 struct GradientSubject {
   std::string system;
   long steps = 0;
@@ -63,9 +66,12 @@ struct GradientSubject {
   std::vector<std::pair<std::string, std::string>> refused = {};
   std::vector<std::string> notes = {};   ///< on what derivatives hold
   std::vector<std::string> events = {};  ///< of the scene, by their names
-  /// The run through them, observed where they happen and at a node, or at the end for -1; null in a scene without.
-  std::function<EventSensitivities(const std::vector<std::string>& parameters, const std::vector<Nudge>&, long node)>
+  /// The run through them, observed where they happen and at a node, or at the end for -1, by what is asked for; null
+  /// in a scene without.
+  std::function<EventSensitivities(const std::vector<std::string>& parameters, const std::vector<Nudge>&, long node,
+                                   ThroughEvents)>
       through_events = nullptr;
+  bool begins_through_events = false;  ///< whether motions of `begin` go through them
   /// Of a boundary value, by these parameters; `start` is then both ends. Null for a run.
   std::function<BoundaryCost(const std::vector<std::string>& parameters)> cost = nullptr;
 };

@@ -216,7 +216,8 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
       const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);
       for (const SmoothEvent<Sys>& event : events) out.events.push_back(event.name);
       out.through_events = [started, observe, events, steps = out.steps](const std::vector<std::string>& parameters,
-                                                                         const std::vector<Nudge>& nudges, long node) {
+                                                                         const std::vector<Nudge>& nudges, long node,
+                                                                         ThroughEvents) {
         const auto from = started(nudges);
         SensitivityOptions<Sys> options{.steps = steps, .parameters = parameters, .configuration = from.configuration};
         options.observed.node = node;

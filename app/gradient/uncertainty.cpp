@@ -169,8 +169,9 @@ GradientSubject moved_to(const GradientSubject& subject, const InputErrors& erro
       return subject.begun_by(parameters, and_offsets(nudges));
     };
   if (subject.through_events)
-    out.through_events = [=](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node) {
-      return subject.through_events(parameters, and_offsets(nudges), node);
+    out.through_events = [=](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
+                             ThroughEvents by) {
+      return subject.through_events(parameters, and_offsets(nudges), node, by);
     };
   return out;
 }

@@ -46,12 +46,12 @@ def measure(folder, tests):
     launcher = f"{sys.executable};{clone}/bench/commands/processor_time.py;{log}"
     rows = []
 
-    def add(what, command, cwd=clone):
-        rows.append((what, " ".join(command), *timed(command, cwd)))
+    def add(what, command, beside=()):
+        rows.append((what, " ".join(command), *timed([*command, *beside], clone)))
 
     # As on a machine without ccache: with precompiled headers, and a launcher that only looks at the clock.
-    add("configure", ["cmake", "--preset", "release", "-DCCACHE=OFF", "-DLAGROID_PRECOMPILE=ON",
-                      f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"])
+    add("configure", ["cmake", "--preset", "release", "-DCCACHE=OFF", "-DLAGROID_PRECOMPILE=ON"],
+        beside=[f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"])
     add("demo", ["./lagroid", "demo"])
     add("laws of its system", ["./lagroid", "check", "examples/plate_ball.toml", "--samples", "1"])
     add("another system", ["./lagroid", "run", "examples/kepler.toml"])
@@ -80,12 +80,18 @@ def measure(folder, tests):
     return rows, files
 
 
+def seconds(time):
+    return f"{time:.0f} s" if time >= 10 else f"{time:.1f} s"
+
+
 def page(rows, files):
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, capture_output=True, text=True).stdout.strip()
     cores = subprocess.run(["nproc"], capture_output=True, text=True).stdout.strip()
+    model = next((line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+                  if line.startswith("model name")), "unknown processor")
     out = ["# What building takes", "",
-           f"Written by `./lagroid bench build --page` at commit {commit}, on {cores} cores, without ccache, apt's time apart. Each row goes on",
-           "in the build of those before it.", "",
+           f"Written by `{' '.join(['./lagroid bench build', *sys.argv[1:]])}` at commit {commit}, on {cores} cores ({model}), without ccache, apt's",
+           "time apart. Each row goes on in the build of those before it.", "",
            "| what | command | wall | processor | goal | verdict |", "|---|---|---|---|---|---|"]
     for what, command, wall, processor in rows:
         goal, verdict = "", ""
@@ -93,7 +99,7 @@ def page(rows, files):
             most_wall, most_processor = goals[what]
             goal = f"{most_wall} s" + (f", {most_processor} s of processor" if most_processor else "")
             verdict = "reached" if wall <= most_wall and (not most_processor or processor <= most_processor) else "missed"
-        out.append(f"| {what} | `{command}` | {wall:.0f} s | {processor:.0f} s | {goal} | {verdict} |")
+        out.append(f"| {what} | `{command}` | {seconds(wall)} | {seconds(processor)} | {goal} | {verdict} |")
     above = [name for name, entry in files.items() if entry["seconds"] > dearest]
     out += ["", f"Of {len(files)} files {len(above)} take more than {dearest} s of processor. The dearest:", "",
             "| file | processor | memory |", "|---|---|---|"]

@@ -51,7 +51,7 @@ struct Attitude {
 /// bodies, then the points fixed to bodies and to the ground; `attitude` the rotations A that carry bodies to space,
 /// and last the identity, which is the ground's. Lengths in m, time in s.
 template <class S = double> struct BasicConfiguration {
-  double time = 0;
+  S time = 0;
   std::vector<Vector<S, 3>> x;
   std::vector<Matrix<S, 3, 3>> attitude;
   std::vector<double> arm;  ///< how far each point is from the place that moves it, m

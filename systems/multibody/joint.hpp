@@ -33,7 +33,7 @@ template <class S = double> struct BasicSceneArrow {
   const BasicConfiguration<S>& after;
   const std::vector<Vector<S, 3>>& displacements;  ///< of point masses and centres of mass, m
   const std::vector<Vector<S, 3>>& turns;          ///< coordinates xi of the attitudes' turns, in the bodies' frames
-  double h;
+  S h;
 
   /// Of a point mass or a centre of mass; of a planar body's own place (Scene::planar_place) with its angle.
   const Vector<S, 3>& displacement(Site s) const { return displacements[std::size_t(s.index)]; }

@@ -58,11 +58,11 @@ template <class S = double> struct BasicModel {
     int site;
     Vector<S, 3> place, amplitude;
     S rate;
-    Vector<S, 3> at(double time) const {
+    Vector<S, 3> at(const S& time) const {
       using std::cos;
       return place + (1 - cos(rate * time)) * amplitude;
     }
-    Vector<S, 3> velocity(double time) const {
+    Vector<S, 3> velocity(const S& time) const {
       using std::sin;
       return rate * sin(rate * time) * amplitude;
     }

@@ -417,6 +417,7 @@ void Multibody::go_on_from(const Multibody& other) {
   forget_rows();
   begin();
   leave_out_dependent();
+  if (state_.control && state_.index == 0) state_.control.emplace(step_, time_scale_rate());
   follow_state();
 }
 

@@ -86,8 +86,8 @@ class Multibody {
   /// and a small `violation`.
   void switch_to(const std::vector<char>& on);
   /// Goes on from where another motion is, of a scene that differs from this one in numbers alone. Momenta stay what
-  /// they are, and of velocities that its joints do not allow the next step leaves what they do. Throws
-  /// std::invalid_argument where it is none of such a scene.
+  /// they are, and of velocities that its joints do not allow the next step leaves what they do; at the start,
+  /// controlled steps begin with the time scale there. Throws std::invalid_argument where it is none of such a scene.
   void go_on_from(const Multibody& other);
   /// Adds to the momentum of a linear factor (Scene::linear_of; of a planar body with its angular momentum), and to the
   /// angular momentum of what turns in its own frame; -1 for none. What joints do not allow of it the next step takes.

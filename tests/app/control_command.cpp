@@ -17,6 +17,10 @@ namespace {
 class Control : public CommandLine {
  protected:
   static std::string scene(const std::string& name) { return "control " + example("control/" + name); }
+  static std::string text_of(const std::string& name) {
+    std::ifstream file(fs::path(LAGROID_EXAMPLES) / "control" / (name + ".toml"));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
 };
 
 TEST_F(Control, EveryExampleFindsAMinimum) {
@@ -25,9 +29,7 @@ TEST_F(Control, EveryExampleFindsAMinimum) {
     if (entry.path().extension() != ".toml") continue;
     ++examples;
     const std::string name = entry.path().stem();
-    std::ifstream file(entry.path());
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const bool has_phases = text.find("[[phase]]") != std::string::npos;
+    const bool has_phases = text_of(name).find("[[phase]]") != std::string::npos;
     const Outcome r = run(scene(name) + " --json" + (has_phases ? "" : " --set horizon.stages=40"));
     ASSERT_EQ(r.code, 0) << name << r.err << r.out;
     const auto found = nlohmann::json::parse(r.out);
@@ -234,9 +236,66 @@ TEST_F(Control, ScenesOfBodiesSayWhatIsWrongWithThem) {
   refused("end.0.velocity=[0.0, 0.0]", "leave it out of a body at_rest");
   refused("end.0.at=[0.1, 0.0, 0.0]", "give position, or leave it out");
   refused("constraint.0.centre=[1.0, 0.0, 0.0]", "is inside at the start");
-  refused("constraint.0.kind=\"cone\"", "sphere");
+  refused("constraint.0.kind=\"tube\"", "sphere");
   refused("horizon.free=true", "give it a weight");
   refused("effect.0.rate=1.0", "follow time");
+}
+
+TEST_F(Control, LimitsOfBodiesSayWhatIsWrongWithThem) {
+  const auto refused = [&](const std::string& name, const std::string& limit, const std::string& words) {
+    const Outcome r = run("control " + write(text_of(name) + "\n[[constraint]]\n" + limit).string());
+    EXPECT_EQ(r.code, 2) << limit << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << limit << ": " << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  };
+  const std::string cone = "kind = 'cone'\nbody = 'front'\ndirection = [0, 0, 1]\naxis = [0, 0, 2]\n";
+  refused("cat_of_bodies", cone, "give at_least or at_most");
+  refused("cat_of_bodies", cone + "at_least = 0.3\n", "has its direction 0 rad from the axis at the start");
+  refused("cat_of_bodies", cone + "at_most = 3.2\n", "between 0 and pi");
+  refused("cat_of_bodies", cone + "at_most = 0\n", "between 0 and pi");
+  refused("cat_of_bodies", cone + "at_least = 2\nat_most = 1\n", "2 is not below at_most, 1");
+  refused("cat_of_bodies", "kind = 'cone'\nbody = 'front'\ndirection = [0, 0, 0]\naxis = [0, 0, 1]\nat_most = 1\n",
+          "must not vanish");
+  refused("arm_of_bodies", "kind = 'cone'\nbody = 'fore'\ndirection = [1, 0, 0]\naxis = [1, 0, 0]\nat_most = 1\n",
+          "\"fore\" does not turn in space");
+  refused("arm_of_bodies", "kind = 'speed'\nbody = 'fore'\n", "give speed (m/s) or angular_speed (rad/s)");
+  refused("arm_of_bodies", "kind = 'speed'\nbody = 'fore'\nspeed = 0\n", "positive");
+  const std::string falls = "[[body]]\nname = 'ball'\nkind = 'point'\nmass = 1\nposition = [5, 5, 5]\n";
+  refused("arm_of_bodies", "kind = 'speed'\nbody = 'ball'\nangular_speed = 1\n" + falls, "does not turn");
+  refused("arm_of_bodies", "kind = 'speed'\nbody = 'ball'\nspeed = 1\n" + falls + "velocity = [2, 0, 0]\n",
+          "speed limit 1 does not hold at the start");
+}
+
+TEST_F(Control, LimitsOfBodiesAreActiveInWhatIsWritten) {
+  const fs::path out = folder_ / "limited";
+  const fs::path file = write(text_of("arm_of_bodies") +
+                              "\n[[constraint]]\nkind = 'speed'\nbody = 'fore'\nspeed = 1.5\n"
+                              "[[effect]]\nkind = 'drag'\nbodies = ['fore']\nmotion = 0.2\nturning = 0.1\n");
+  const std::string set = "control " + file.string() + " --json --set horizon.stages=30 --set solver.starts=4";
+  const Outcome r = run(set + " --out " + out.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto found = nlohmann::json::parse(r.out);
+  EXPECT_GT(found.at("crossover").at("active"), 0);
+  const auto [header, rows] = rows_of(out);
+  std::vector<std::string> names;
+  std::istringstream cells(header);
+  for (std::string name; std::getline(cells, name, ',');) names.push_back(name);
+  const auto column = [&](const std::string& name) {
+    return std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  double fastest = 0;
+  for (const auto& row : rows)
+    fastest = std::max(fastest, std::hypot(row.at(column("fore.vx")), row.at(column("fore.vy"))));
+  EXPECT_NEAR(fastest, 1.5, 1e-9);
+  const Outcome by_ipopt = run(set + " --set solver.method=ipopt");
+  if (by_ipopt.code == 2) {
+    EXPECT_NE(by_ipopt.err.find("install coinor-libipopt-dev"), std::string::npos) << by_ipopt.err;
+    GTEST_SKIP() << "a build without IPOPT";
+  }
+  ASSERT_EQ(by_ipopt.code, 0) << by_ipopt.err;
+  const auto theirs = nlohmann::json::parse(by_ipopt.out);
+  EXPECT_EQ(theirs.at("method"), "ipopt");
+  EXPECT_NEAR(theirs.at("cost").get<double>(), found.at("cost").get<double>(), 1e-7);
 }
 
 TEST_F(Control, IpoptFindsTheSameInTheSameFiles) {

@@ -1,10 +1,10 @@
 #include "bodies_keys.hpp"
 
-#include "../search_keys.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -12,9 +12,11 @@ namespace lagroid::app {
 
 namespace {
 
+using multibody::DirectionCone;
 using multibody::KeepOut;
 using multibody::SceneEnd;
 using multibody::Site;
+using multibody::SpeedLimit;
 using multibody::Vec;
 
 const KeyOf<Text> effect_key{"effect", {}, "", "name of the effect whose strength is a control u"};
@@ -40,25 +42,36 @@ const KeyOf<NumberArray> on_key = vector_key("point", "m", "of the plane");
 const KeyOf<NumberArray> normal_key = vector_key("normal", "", "leads to the side that the point stays on");
 const KeyOf<Number> time_weight{"weight", {nonnegative}, "", "w of the cost w T, which a free duration needs", 0.0};
 
-struct KeepOutKind {
+const NumberRule an_angle{"between 0 and pi", [](double x) { return x > 0 && x < std::numbers::pi; }};
+const KeyOf<NumberArray> direction_key = vector_key("direction", "", "fixed in the body, in its frame");
+const KeyOf<NumberArray> axis_key = vector_key("axis", "", "of the cone, in space");
+const KeyOf<Number> at_least_key{"at_least", {an_angle}, "rad", "of direction from axis: outside of a cone", {}, "any"};
+const KeyOf<Number> at_most_key{"at_most", {an_angle}, "rad", "of direction from axis: inside of a cone", {}, "any"};
+const KeyOf<Number> speed_key{"speed", {positive}, "m/s", "of its centre, at most", {}, "any"};
+const KeyOf<Number> angular_speed_key{"angular_speed", {positive}, "rad/s", "of its turning, at most", {}, "any"};
+
+/// What [[constraint]] asks of a body at every node.
+struct LimitKind {
   const char* name;
   const char* about;
-  KeepOut::Kind kind;
   std::vector<Key> keys;
 };
-const std::vector<KeepOutKind>& keep_out_kinds() {
-  static const std::vector<KeepOutKind> all{
-      {"sphere", "the point keeps out of a sphere", KeepOut::Kind::sphere, {centre_key, radius_key}},
+const std::vector<LimitKind>& limit_kinds() {
+  static const std::vector<LimitKind> all{
+      {"sphere", "a point keeps out of a sphere", {body_key, kept_point, centre_key, radius_key}},
       {"disk",
-       "the point keeps out of a disk in the plane of x and y, a cylinder along z",
-       KeepOut::Kind::disk,
-       {centre_key, radius_key}},
-      {"plane", "the point stays on one side of a plane", KeepOut::Kind::plane, {on_key, normal_key}}};
+       "a point keeps out of a disk in the plane of x and y, a cylinder along z",
+       {body_key, kept_point, centre_key, radius_key}},
+      {"plane", "a point stays on one side of a plane", {body_key, kept_point, on_key, normal_key}},
+      {"cone",
+       "a direction of a body that turns in space keeps off another, or near it",
+       {body_key, direction_key, axis_key, at_least_key, at_most_key}},
+      {"speed", "a body does not move or turn faster", {body_key, speed_key, angular_speed_key}}};
   return all;
 }
-KeyOf<OneOf> kind_key(const std::vector<KeepOutKind>& kinds) {
+KeyOf<OneOf> kind_key(const std::vector<LimitKind>& kinds) {
   KeyOf<OneOf> key{"kind"};
-  for (const KeepOutKind& each : kinds) key.value.words.emplace_back(each.name);
+  for (const LimitKind& each : kinds) key.value.words.emplace_back(each.name);
   return key;
 }
 
@@ -119,32 +132,90 @@ class Reader {
     }
   }
 
-  void read_keep_out(const Section& table) {
-    const std::string kind = read_key(table, kind_key(keep_out_kinds()));
-    const auto found = std::find_if(keep_out_kinds().begin(), keep_out_kinds().end(),
-                                    [&](const KeepOutKind& each) { return each.name == kind; });
+  void read_constraint(const Section& table) {
+    const std::string kind = read_key(table, kind_key(limit_kinds()));
     const NamedBody& body = bodies_.named(table, body_key.name, read_key(table, body_key));
+    if (kind == "cone") return read_cone(table, body);
+    if (kind == "speed") return read_speed(table, body);
+    read_keep_out(table, body,
+                  kind == "plane"  ? KeepOut::Kind::plane
+                  : kind == "disk" ? KeepOut::Kind::disk
+                                   : KeepOut::Kind::sphere);
+  }
+
+  const std::vector<PointOf>& points() const { return points_; }
+
+ private:
+  void read_keep_out(const Section& table, const NamedBody& body, KeepOut::Kind kind) {
     KeepOut keep_out;
-    keep_out.kind = found->kind;
+    keep_out.kind = kind;
     const Attachment point = point_of(table, kept_point, body);
     keep_out.site = point.site;
-    const auto vector = [&](const KeyOf<NumberArray>& key) { return Vec(read_key(table, key).data()); };
     if (keep_out.kind == KeepOut::Kind::plane) {
-      keep_out.centre = vector(on_key);
-      keep_out.normal = vector(normal_key);
-      if (!(keep_out.normal.norm() > 0)) table.fail("normal", "must not vanish");
-      keep_out.normal.normalize();
+      keep_out.centre = vector(table, on_key);
+      keep_out.normal = unit(table, normal_key);
     } else {
-      keep_out.centre = vector(centre_key);
+      keep_out.centre = vector(table, centre_key);
       keep_out.radius = read_key(table, radius_key);
     }
     if (keep_out.value(point.place) > 0) table.fail("", fmt::format("\"{}\" is inside at the start", body.name));
     out_.task.keep_outs.push_back(keep_out);
   }
 
-  const std::vector<PointOf>& points() const { return points_; }
+  void read_cone(const Section& table, const NamedBody& body) {
+    if (body.body.attitude.index < 0)
+      table.fail("body", fmt::format("\"{}\" does not turn in space: keep points of it out instead", body.name));
+    DirectionCone cone;
+    cone.attitude = body.body.attitude;
+    cone.direction = unit(table, direction_key);
+    cone.axis = unit(table, axis_key);
+    const double at_least = read_key_or(table, at_least_key, 0);
+    const double at_most = read_key_or(table, at_most_key, std::numbers::pi);
+    if (!table.has(at_least_key.name) && !table.has(at_most_key.name))
+      table.fail("", "a cone has an angle: give at_least or at_most (rad)");
+    if (!(at_least < at_most)) table.fail("at_least", fmt::format("{} is not below at_most, {}", at_least, at_most));
+    const auto add = [&](const KeyOf<Number>& key, double angle, DirectionCone::Side side) {
+      if (!table.has(key.name)) return;
+      cone.angle = angle;
+      cone.side = side;
+      if (cone.value(body.attitude) > 0)
+        table.fail(key.name, fmt::format("\"{}\" has its direction {:.4g} rad from the axis at the start", body.name,
+                                         std::acos((body.attitude * cone.direction).dot(cone.axis))));
+      out_.task.cones.push_back(cone);
+    };
+    add(at_least_key, at_least, DirectionCone::Side::outside);
+    add(at_most_key, at_most, DirectionCone::Side::inside);
+  }
 
- private:
+  void read_speed(const Section& table, const NamedBody& body) {
+    if (!table.has(speed_key.name) && !table.has(angular_speed_key.name))
+      table.fail("", "give speed (m/s) or angular_speed (rad/s), the largest that it may have");
+    if (table.has(speed_key.name)) {
+      if (body.linear < 0) table.fail("speed", fmt::format("\"{}\" is held at its pivot", body.name));
+      SpeedLimit& limit = out_.task.speed_limits.emplace_back();
+      limit.linear = body.linear;
+      if (body.planar) limit.axes = {0, 1};
+      limit.most = read_key_or(table, speed_key, 0);
+    }
+    if (!table.has(angular_speed_key.name)) return;
+    const bool turns = body.planar || body.body.attitude.index >= 0;
+    if (!turns) table.fail("angular_speed", fmt::format("\"{}\" does not turn", body.name));
+    SpeedLimit& limit = out_.task.speed_limits.emplace_back();
+    if (body.planar) {
+      limit.linear = body.linear;
+      limit.axes = {2};
+    } else {
+      limit.attitude = body.body.attitude;
+    }
+    limit.most = read_key_or(table, angular_speed_key, 0);
+  }
+
+  static Vec vector(const Section& table, const KeyOf<NumberArray>& key) { return Vec(read_key(table, key).data()); }
+  static Vec unit(const Section& table, const KeyOf<NumberArray>& key) {
+    const Vec v = vector(table, key);
+    if (!(v.norm() > 0)) table.fail(key.name, "must not vanish");
+    return v.normalized();
+  }
   static std::vector<double> numbers(const Section& table, const KeyOf<NumberList>& key, std::size_t count) {
     const std::vector<double> out = read_key_or(table, key, {});
     if (out.size() != count) table.fail(key.name, fmt::format("give {} numbers of this body", count));
@@ -177,7 +248,7 @@ BodiesControl read_controlled_bodies(const Section& scene) {
     scene.fail("project_velocities", "give velocities that the joints allow: a controlled scene starts with them");
   Reader reader(bodies, out);
   for (const Section& table : scene.tables("end")) reader.read_end(table);
-  for (const Section& table : scene.tables("constraint")) reader.read_keep_out(table);
+  for (const Section& table : scene.tables("constraint")) reader.read_constraint(table);
   const Section text = scene;
   const std::vector<PointOf> points = reader.points();
   out.task.scene = [text, points] { return with_points(read_scene_bodies(text), points).scene; };
@@ -198,7 +269,9 @@ BodiesControl read_controlled_bodies(const Section& scene) {
   out.task.duration_is_free = read_key(horizon, free_key);
   out.task.duration_weight = read_key(horizon, time_weight);
   out.task.stages = read_key(horizon, stages_key);
-  read_search(scene.section_or_empty("solver"), out.search);
+  const Section solver = scene.section_or_empty("solver");
+  out.method = read_method(solver);
+  read_search(solver, out.search);
   out.bodies.assign(bodies.bodies.begin(), bodies.bodies.end());
   scene.finish();
   return out;
@@ -206,9 +279,9 @@ BodiesControl read_controlled_bodies(const Section& scene) {
 
 std::vector<Key> controlled_bodies_keys() {
   std::vector<Key> out = bodies_table().keys;
-  Table keep_outs;
-  for (const KeepOutKind& each : keep_out_kinds()) {
-    Table& kind = keep_outs.kinds.emplace_back(Table{{kind_key({each}), body_key, kept_point}, {}, each.about});
+  Table limits;
+  for (const LimitKind& each : limit_kinds()) {
+    Table& kind = limits.kinds.emplace_back(Table{{kind_key({each})}, {}, each.about});
     kind.keys.insert(kind.keys.end(), each.keys.begin(), each.keys.end());
   }
   const Table end{{body_key, point_key, position_key, attitude_key, angle_key, velocity_key, turning_key, at_rest_key}};
@@ -216,7 +289,7 @@ std::vector<Key> controlled_bodies_keys() {
       out.end(),
       {KeyOf<Tables>{"actuator", {{{effect_key, bounds_key, weight_key}}}, "", "the controls"},
        KeyOf<Tables>{"end", {end}, "", "what is given of the end, body by body", {}, "all is free"},
-       KeyOf<Tables>{"constraint", {keep_outs}, "", "what points of bodies keep out of", {}, "none"},
+       KeyOf<Tables>{"constraint", {limits}, "", "what bodies keep to at every node", {}, "none"},
        KeyOf<Table>{"horizon", {{duration_key, free_key, stages_key, time_weight}}, "", "how long, in how many arrows"},
        optional_table("solver", {search_keys()}, "of the search")});
   return out;

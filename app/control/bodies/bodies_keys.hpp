@@ -7,6 +7,7 @@
 
 #include "../../bodies/scene_bodies.hpp"
 #include "../../keys/key.hpp"
+#include "../search_keys.hpp"
 
 #include <lagroid/systems/multibody/control/scene_search.hpp>
 
@@ -17,6 +18,7 @@ namespace lagroid::app {
 struct BodiesControl {
   multibody::SceneControl task;
   multibody::SceneSearchOptions search;
+  ControlMethod method = ControlMethod::interior_point;
   std::vector<NamedBody> bodies;
 };
 

@@ -6,9 +6,10 @@
 
 namespace lagroid::app {
 
-Certificate certificate_of(multibody::ControlledScene& scene, const multibody::SceneSearchOptions& search, int samples,
-                           std::uint64_t seed) {
-  const multibody::SceneSearch found = search_scene(scene, search);
+Certificate certificate_of(multibody::ControlledScene& scene, const multibody::SceneSearchOptions& search,
+                           const multibody::SceneSolver& solve, int samples, std::uint64_t seed) {
+  const multibody::SceneSearch found = search_scene(
+      scene, search, [](int) { return true; }, solve);
   Certificate out;
   out.samples = samples;
   out.seed = long(seed);

@@ -9,7 +9,7 @@
 namespace lagroid::app {
 
 /// Without names of system and groupoid.
-Certificate certificate_of(multibody::ControlledScene& scene, const multibody::SceneSearchOptions& search, int samples,
-                           std::uint64_t seed);
+Certificate certificate_of(multibody::ControlledScene& scene, const multibody::SceneSearchOptions& search,
+                           const multibody::SceneSolver& solve, int samples, std::uint64_t seed);
 
 }  // namespace lagroid::app

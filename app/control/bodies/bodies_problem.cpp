@@ -5,6 +5,7 @@
 #include "bodies_laws.hpp"
 
 #include <lagroid/solvers/processor_time.hpp>
+#include <lagroid/systems/multibody/control/ipopt/scene_chart.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,6 +30,11 @@ ControlledScene controlled(const Section& scene, const BodiesControl& read) {
   } catch (const std::logic_error& error) {
     scene.fail("", error.what());
   }
+}
+
+multibody::SceneSolver solver_of(const BodiesControl& read) {
+  if (read.method == ControlMethod::ipopt) return multibody::solve_scene_by_ipopt;
+  return multibody::solve_scene;
 }
 
 const SceneSolution& best_of(const SceneSearch& found) {
@@ -109,7 +115,7 @@ class ControlledBodies final : public ControlProblem {
     const BodiesControl read = read_controlled_bodies(text);
     ControlledScene scene = controlled(text, read);
     const double before = processor_time();
-    const SceneSearch found = search_scene(scene, read.search, keep_going);
+    const SceneSearch found = search_scene(scene, read.search, keep_going, solver_of(read));
     const SceneSolution& best = best_of(found);
     Seen seen(scene, read.bodies);
     ControlResult out;
@@ -130,6 +136,7 @@ class ControlledBodies final : public ControlProblem {
       out.control_rows.emplace_back(best.path.controls[k], best.path.controls[k] + scene.actuators());
     out.costate_rows = rows_of(best.costates, stages);
     out.inequality_rows = rows_of(best.inequality_multipliers, stages);
+    out.by_ipopt = read.method == ControlMethod::ipopt;
     out.equations = 2 * scene.n();
     out.report = best.report;
     out.crossover = best.crossover;
@@ -143,7 +150,7 @@ class ControlledBodies final : public ControlProblem {
   Certificate certify(const Section& text, int samples, std::uint64_t seed) const override {
     BodiesControl read = read_controlled_bodies(text);
     ControlledScene scene = controlled(text, read);
-    Certificate out = certificate_of(scene, read.search, samples, seed);
+    Certificate out = certificate_of(scene, read.search, solver_of(read), samples, seed);
     out.system = name();
     out.groupoid = groupoid_of(read.bodies);
     return out;

@@ -5,7 +5,8 @@
 ///
 /// Adds to the fit the columns that are used, and the names of those that are not. Errors: DataError, one line, for
 /// files that cannot be read, times that are not those of nodes and columns of which nothing is measured;
-/// GradientRefused for columns that are none of the run, and for runs through events or between two ends.
+/// GradientRefused for columns that are none of the run, for runs between two ends, and for events of which `begin`
+/// knows nothing.
 
 #include "fit.hpp"
 

@@ -1,5 +1,7 @@
 #include "predicted_runs.hpp"
 
+#include <lagroid/run/events/motion_through_events.hpp>
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -117,6 +119,8 @@ void PredictedRuns::predict(std::size_t run, std::size_t first, bool with_deriva
     derivatives_.row(at).tail(by_parameters) = by.tail(by_parameters);
   }
 } catch (const std::domain_error& error) {  // of parameters that a system cannot have
+  failure_ = error.what();
+} catch (const EventWithoutDerivative& error) {
   failure_ = error.what();
 }
 

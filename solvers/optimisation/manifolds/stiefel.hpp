@@ -53,6 +53,8 @@ class Stiefel final : public Manifold {
  private:
   using Matrix = Eigen::MatrixXd;
 
+  /// gram_ = a^T a.
+  void gram_of(const Eigen::Ref<const Matrix>& a) const;
   bool qr(Matrix& y) const;
   bool multipliers() const;
   void polish(Point& x) const;

@@ -26,6 +26,7 @@ ControlledScene::ControlledScene(SceneControl task) : task_(std::move(task)), mo
   for (const int control : controls_) on[std::size_t(control)] = 0;
   if (on != motion_.switches().on) motion_.switch_to(on);
 
+  find_damping();
   const SceneState& state = motion_.state();
   start_.places.assign(state.at.x.begin(), state.at.x.begin() + linear());
   start_.attitudes.assign(state.at.attitude.begin(), state.at.attitude.begin() + (factors() - linear()));
@@ -38,13 +39,15 @@ ControlledScene::ControlledScene(SceneControl task) : task_(std::move(task)), mo
   }
   momenta_.resize(std::size_t(n()));
   varied_momenta_.assign(std::size_t(n()), SecondNumber(0));
-  conditions_ = EndConditions(task_.end, joints(), std::move(weights), motion_.model().factors.planar);
+  conditions_ = EndConditions(task_.end, joints(), std::move(weights), drag_, motion_.model().factors.planar);
   gradients_.resize(joints(), n());
   along_.resize(n(), joints());
   matrix_.resize(joints(), joints());
   aim_.resize(joints());
   left_.resize(joints());
   by_.setZero(2 * n());
+  limits_ = NodeLimits(task_, *plain_);
+  require_limits();
   conditions_.hold(held_by_motion());
   find_end();
 }
@@ -66,6 +69,7 @@ void ControlledScene::require_task() const {
       throw std::invalid_argument(fmt::format("actuator \"{}\": its weight {} is negative", each.effect, each.weight));
     costs = costs || each.weight > 0;
   }
+  NodeLimits::require(task_);
   if (!costs) throw std::invalid_argument("nothing costs: give an actuator or the duration a weight");
   if (task_.duration_is_free && !(task_.duration_weight > 0))
     throw std::invalid_argument("a duration that is free without a cost may grow for ever: give it a weight");
@@ -75,19 +79,27 @@ void ControlledScene::require_task() const {
         "others",
         motion_.dependent_rows()));
   const Model& model = motion_.model();
-  if (!model.factors.dragged.empty() || !model.factors.damped_turns.empty())
-    throw std::invalid_argument("drag, magnetic fields and rotating frames are not controlled here: leave them out");
   if (!model.points.moving.empty())
     throw std::invalid_argument("points of the ground that move are not controlled here: let them rest");
   for (const Model::Batch& batch : model.rows.batches)
-    if (batch.role != Role::holonomic)
-      throw std::invalid_argument(batch.role == Role::damping
-                                      ? "dampers are not controlled here: leave them out"
-                                      : "joints on velocities (rolling, blades, driven hinges) are not controlled "
-                                        "here: leave them out");
+    if (batch.role != Role::holonomic && batch.role != Role::damping)
+      throw std::invalid_argument(
+          "joints on velocities (rolling, blades, driven hinges) are not controlled here: leave them out");
   if (!(motion_.constraint_residual() < 1e-8)) throw std::invalid_argument("the joints do not hold at the start");
   if (motion_.velocity_defect() > 1e-9)
     throw std::invalid_argument("the joints do not allow the velocities at the start");
+}
+
+void ControlledScene::require_limits() {
+  constexpr double rounding = 1e-12;
+  const std::vector<double> speeds = velocities(start_);
+  for (int i = 0; i < limits_.size(); ++i) {
+    const int of_speed = i - limits_.on_places();
+    const double value = of_speed < 0 ? limits_.value(i, *plain_) : limits_.value_of_speed(of_speed, speeds);
+    if (!(value <= rounding))
+      throw std::invalid_argument(
+          fmt::format("{} does not hold at the start: begin where it does, or leave it out", limits_.name(i)));
+  }
 }
 
 void ControlledScene::find_controls() {
@@ -104,9 +116,24 @@ void ControlledScene::find_controls() {
       throw std::invalid_argument(fmt::format("effect \"{}\" is controlled twice", each.effect));
     for (const Model::Batch& batch : motion_.model().rows.batches)
       if (batch.switched_by == number)
-        throw std::invalid_argument(fmt::format("\"{}\" is a joint: controls are strengths of effects", each.effect));
+        throw std::invalid_argument(fmt::format("\"{}\" is a {}: controls are strengths of forces", each.effect,
+                                                batch.role == Role::damping ? "damper" : "joint"));
     controls_.push_back(number);
   }
+}
+
+void ControlledScene::find_damping() {
+  const Model& model = motion_.model();
+  drag_.assign(std::size_t(factors()), Mat::Zero());
+  for (const Model::Dragged& each : model.factors.dragged) drag_[std::size_t(each.factor)] = each.drag;
+  for (const int r : model.factors.damped_turns)
+    drag_[std::size_t(linear() + r)] = model.factors.turn_damping[std::size_t(r)].asDiagonal();
+  const bool damped = std::any_of(model.rows.batches.begin(), model.rows.batches.end(), [&](const Model::Batch& batch) {
+    return batch.role == Role::damping && model.is_on(batch);
+  });
+  if (!damped) return;
+  plain_dampers_ = std::make_unique<DamperForces<double>>(task_.scene(), model.switches.on);
+  varied_dampers_ = std::make_unique<DamperForces<SecondNumber>>(task_.second(), model.switches.on);
 }
 
 // A pin's third row moves nothing, and is left out of the motion's.
@@ -114,7 +141,8 @@ void ControlledScene::find_rows() {
   const Model& model = motion_.model();
   for (const Model::Batch& batch : model.rows.batches)
     for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row)
-      if (model.is_on(batch) && !model.rows.left_out[std::size_t(row)]) rows_.push_back(row);
+      if (batch.role == Role::holonomic && model.is_on(batch) && !model.rows.left_out[std::size_t(row)])
+        rows_.push_back(row);
   std::sort(rows_.begin(), rows_.end());
 }
 
@@ -175,52 +203,6 @@ Eigen::VectorXd ControlledScene::difference(const ControlledNode& from, const Co
     const Mat turn = from.attitudes[r].transpose() * to.attitudes[r];
     out.segment<3>(3 * f) = rotation() == Retraction::exponential ? SO3::log(turn) : SO3::cayley_inverse(turn);
   }
-  return out;
-}
-
-const NodeForces<double>& ControlledScene::forces(const ControlledNode& node) {
-  for (int f = 0; f < linear(); ++f) plain_->place(f) = node.places[std::size_t(f)];
-  for (int f = linear(); f < factors(); ++f) plain_->attitude(f - linear()) = node.attitudes[std::size_t(f - linear())];
-  plain_->evaluate();
-  return *plain_;
-}
-
-const NodeForces<SecondNumber>& ControlledScene::forces(const ControlledNode& node, int left, int right) {
-  for (int f = 0; f < factors(); ++f) {
-    Vector<SecondNumber, 3> v = Vector<SecondNumber, 3>::Constant(SecondNumber(0));
-    for (int i = 0; i < 3; ++i) {
-      if (f == left) v(i).set_left(i, 1);
-      if (f == right) v(i).set_right(i, 1);
-    }
-    const bool varies = f == left || f == right;
-    if (f < linear()) {
-      varied_->place(f) = node.places[std::size_t(f)].cast<SecondNumber>() + v;
-    } else {
-      const Matrix<SecondNumber, 3, 3> a = node.attitudes[std::size_t(f - linear())].cast<SecondNumber>();
-      varied_->attitude(f - linear()) = varies ? Matrix<SecondNumber, 3, 3>(a * turn_of(rotation(), v)) : a;
-    }
-  }
-  varied_->evaluate();
-  return *varied_;
-}
-
-void ControlledScene::end_values(const ControlledNode& node, std::vector<double>& out) {
-  std::copy_n(node.momenta.data(), n(), momenta_.begin());
-  conditions_.values(forces(node), momenta_, out);
-}
-
-void ControlledScene::end_values(const ControlledNode& node, int momenta_right, std::vector<SecondNumber>& out) {
-  for (int i = 0; i < n(); ++i) {
-    varied_momenta_[std::size_t(i)] = SecondNumber(node.momenta(i));
-    if (i / 3 == momenta_right) varied_momenta_[std::size_t(i)].set_right(i % 3, 1);
-  }
-  conditions_.values(*varied_, varied_momenta_, out);
-}
-
-std::vector<double> ControlledScene::velocities(const ControlledNode& node) {
-  std::vector<double> out;
-  std::copy_n(node.momenta.data(), n(), momenta_.begin());
-  conditions_.velocities(forces(node), momenta_, out);
   return out;
 }
 

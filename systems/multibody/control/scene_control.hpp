@@ -1,6 +1,6 @@
 #pragma once
 /// An optimal control problem of a scene of bodies: effects whose strengths are controls, where the bodies are to end,
-/// and what they are to keep out of,
+/// what they are to keep out of, where they may point, and how fast they may be,
 ///
 ///     minimise  integral of (sum_j w_j u_j^2 + w) dt,    lower_j <= u_j <= upper_j.
 ///
@@ -63,6 +63,36 @@ struct KeepOut {
   }
 };
 
+/// How far a direction of a body is to be from one of the ground at every node, at least (the body keeps it outside of
+/// a cone, as a star tracker off the sun) or at most (inside): value(A) <= 0 where it is.
+struct DirectionCone {
+  enum class Side {
+    outside,  ///< a.A d - cos(angle)
+    inside    ///< cos(angle) - a.A d
+  };
+  Attitude attitude;
+  Vector<double, 3> direction = Vector<double, 3>::UnitZ();  ///< d, in the body, of length one
+  Vector<double, 3> axis = Vector<double, 3>::UnitZ();       ///< a, of the ground, of length one
+  double angle = 1;                                          ///< rad, between zero and pi
+  Side side = Side::outside;
+
+  template <class S> S value(const Matrix<S, 3, 3>& attitude_of_body) const {
+    S cosine = S(0);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) cosine += attitude_of_body(i, j) * (axis(i) * direction(j));
+    return side == Side::outside ? cosine - std::cos(angle) : std::cos(angle) - cosine;
+  }
+};
+
+/// How fast a body may be at every node: sum_i v_i^2 / most^2 <= 1, of the velocity of its centre or of its angular
+/// velocity in the body, as an end has them (SceneEnd), along these axes.
+struct SpeedLimit {
+  int linear = -1;                    ///< Scene::linear_of; -1: the limit is on the turning of
+  Attitude attitude = {};             ///< this one
+  std::vector<int> axes = {0, 1, 2};  ///< of a planar body 0 and 1, and 2 of its turning
+  double most = 1;                    ///< m/s or rad/s
+};
+
 /// What is given of the end.
 struct SceneEnd {
   struct Place {
@@ -95,6 +125,8 @@ struct SceneControl {
   std::function<BasicScene<SecondNumber>()> second;  ///< the same over numbers with second derivatives
   std::vector<Actuator> actuators;
   std::vector<KeepOut> keep_outs;
+  std::vector<DirectionCone> cones;
+  std::vector<SpeedLimit> speed_limits;
   SceneEnd end;
   double duration = 1;  ///< T; the first guess of it where it is free
   bool duration_is_free = false;

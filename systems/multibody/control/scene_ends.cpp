@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <type_traits>
@@ -45,13 +46,16 @@ double ControlledScene::approach_end(int conditions, int numbers) {
   }
 }
 
-/// Translations and turns about the origin, six numbers, along which no force, no control and no joint does any work at
-/// a few nodes, are symmetries.
+/// Translations and turns about the origin, six numbers, along which no force, no control, no joint and no damper does
+/// any work at a few nodes, are symmetries. Along those on which drag does none momenta are kept; along translations of
+/// the others p + c x is, and where drag goes by mass, c = gamma m, the centre of mass is known, for p is: of
+/// (p' - p) / h = -gamma (p' + p) / 2.
 std::vector<HeldByMotion> ControlledScene::held_by_motion() {
   constexpr int nodes = 3;
   constexpr double vanishes = 1e-14;  // of squares
   using Square = Eigen::Matrix<double, 6, 6>;
   Square work = Square::Zero();
+  Square of_drag = Square::Zero();
   const std::vector<char>& planar = motion_.model().factors.planar;
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
@@ -59,7 +63,7 @@ std::vector<HeldByMotion> ControlledScene::held_by_motion() {
   Eigen::VectorXd by(2 * n()), covector(n());
   for (int k = 0; k < nodes; ++k) {
     const NodeForces<double>& at = forces(node);
-    const auto look = [&](const auto& component) {
+    const auto look = [&](const auto& component, Square& sum) {
       for (int i = 0; i < n(); ++i) covector(i) = component(i);
       Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();
       for (int f = 0; f < factors(); ++f) {
@@ -76,11 +80,18 @@ std::vector<HeldByMotion> ControlledScene::held_by_motion() {
         }
       }
       const double size = covector.squaredNorm();
-      if (size > 0) work += along * along.transpose() / size;
+      if (size > 0) sum += along * along.transpose() / size;
     };
-    look([&](int i) { return at.own(i); });
-    for (int j = 0; j < actuators(); ++j) look([&](int i) { return at.of_control(j, i); });
-    for (int row = 0; row < joints(); ++row) look([&](int i) { return at.gradient(row, i); });
+    look([&](int i) { return at.own(i); }, work);
+    for (int j = 0; j < actuators(); ++j) look([&](int i) { return at.of_control(j, i); }, work);
+    for (int row = 0; row < joints(); ++row) look([&](int i) { return at.gradient(row, i); }, work);
+    for (int f = 0; f < factors(); ++f)
+      for (int j = 0; j < 3; ++j) look([&](int i) { return i / 3 == f ? drag(f)(i % 3, j) : 0.0; }, of_drag);
+    if (is_damped()) {
+      const DamperForces<double>& damping = dampers(node, node);
+      for (int row = 0; row < damping.rows(); ++row)
+        look([&](int i) { return damping.covector(End::source, row, i); }, work);
+    }
     for (double& x : by) x = normal(generator);
     displace(start_, by.data(), 0.3, node);
     if (!project(node)) node = start_;  // symmetries are those of places where the joints hold
@@ -100,15 +111,40 @@ std::vector<HeldByMotion> ControlledScene::held_by_motion() {
     for (int i = 0; i < int(square.cols()); ++i)
       if (solver.eigenvalues()(i) <= vanishes) take(solver.eigenvectors().col(i));
   };
-  kernel(work, [&](const auto& v) { hold({Vec(v.template head<3>()), Vec(v.template tail<3>())}); });
+  kernel(Square(work + of_drag), [&](const auto& v) { hold({Vec(v.template head<3>()), Vec(v.template tail<3>())}); });
   if (linear() == 0) return out;
   kernel(Mat(work.topLeftCorner<3, 3>()), [&](const auto& v) {
-    const double momentum = conditions_.value({Vec(v), Vec::Zero()}, at, momenta_);
+    const Vec along = v;
+    if (along.dot(of_drag.topLeftCorner<3, 3>() * along) > vanishes)
+      hold({along, Vec::Zero(), HeldByMotion::Kind::momentum_and_drag});
+    const double momentum = conditions_.value({along, Vec::Zero()}, at, momenta_);
     if (task_.duration_is_free && std::abs(momentum) > 1e-12) return;
-    hold({Vec(v), Vec::Zero(), true});
-    out.back().value += task_.duration * momentum;
+    const std::optional<double> gamma = drag_by_mass(along);
+    if (!gamma) return;
+    hold({along, Vec::Zero(), HeldByMotion::Kind::centre});
+    const double slowed = *gamma * task_.duration / double(task_.stages) / 2;
+    const double left = std::pow((1 - slowed) / (1 + slowed), double(task_.stages));
+    out.back().value += momentum * (*gamma == 0 ? task_.duration : (1 - left) / *gamma);
   });
   return out;
+}
+
+/// gamma of a drag gamma m along a translation; none where it goes by no mass.
+std::optional<double> ControlledScene::drag_by_mass(const Vec& along) const {
+  std::optional<double> gamma;
+  for (int f = 0; f < linear(); ++f) {
+    Vec a = along;
+    if (motion_.model().factors.planar[std::size_t(f)]) a(2) = 0;
+    const Vec pulled = drag(f).transpose() * a;
+    const Vec weighed = inertia(f).cwiseProduct(a);
+    const double here = pulled.dot(weighed) / weighed.squaredNorm();
+    constexpr double rounding = 1e-12;
+    if ((pulled - here * weighed).norm() > rounding * weighed.norm() ||
+        (gamma && std::abs(here - *gamma) > rounding * (1 + std::abs(here))))
+      return std::nullopt;
+    gamma = here;
+  }
+  return gamma;
 }
 
 /// A node that satisfies the end, and what the motion holds: places first, then velocities too. Then those conditions

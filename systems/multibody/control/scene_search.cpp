@@ -26,11 +26,11 @@ void settle(ControlledScene& scene, ScenePath& path) {
       const auto momenta = [&](const ControlledNode& from, const ControlledNode& to) {
         if (f < scene.linear()) {
           const Vec moved = to.places[std::size_t(f)] - from.places[std::size_t(f)];
-          return arrow_momenta<double>(scene.inertia(f), moved, path.step);
+          return arrow_momenta<double>(scene.inertia(f), scene.drag(f), moved, path.step);
         }
         const auto r = std::size_t(f - scene.linear());
         const Mat turn = from.attitudes[r].transpose() * to.attitudes[r];
-        return arrow_momenta<double>(scene.inertia(f), scene.rotation(), turn, path.step);
+        return arrow_momenta<double>(scene.inertia(f), scene.drag(f), scene.rotation(), turn, path.step);
       };
       path.nodes[k].momenta.segment<3>(3 * f) =
           0.5 * (momenta(path.nodes[k - 1], path.nodes[k]).target + momenta(path.nodes[k], path.nodes[k + 1]).source);
@@ -117,10 +117,10 @@ SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const Control
 }
 
 SceneSearch search_scene(ControlledScene& scene, const SceneSearchOptions& options,
-                         const std::function<bool(int)>& keep_going) {
+                         const std::function<bool(int)>& keep_going, const SceneSolver& solve) {
   SceneSearch found;
   search_starts(found, options, keep_going, [&](int start, const ControlOptions& solver) {
-    return solve_scene(scene, scene_guess(scene, start, options), solver);
+    return solve(scene, scene_guess(scene, start, options), solver);
   });
   return found;
 }

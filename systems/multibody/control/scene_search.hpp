@@ -32,7 +32,7 @@ struct SceneSearchOptions {
 struct SceneSolution {
   ScenePath path;
   StageRows costates;                ///< of the stages' equations, behind them those of joints, or of the end
-  StageRows inequality_multipliers;  ///< of what is kept out of, then of finite bounds: of each control upper, lower
+  StageRows inequality_multipliers;  ///< of NodeLimits, then of finite bounds: of each control upper, lower
   ControlReport report;
   CrossoverReport crossover;
 };
@@ -51,10 +51,14 @@ ScenePath halved(ControlledScene& scene, const ScenePath& path);
 
 SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const ControlOptions& options = {});
 
+/// What solves from one start.
+using SceneSolver = std::function<SceneSolution(ControlledScene&, ScenePath, const ControlOptions&)>;
+
 /// Before each start `keep_going(start)` decides whether it is made.
 SceneSearch search_scene(
     ControlledScene& scene, const SceneSearchOptions& options = {},
-    const std::function<bool(int start)>& keep_going = [](int) { return true; });
+    const std::function<bool(int start)>& keep_going = [](int) { return true; },
+    const SceneSolver& solve = solve_scene);
 SceneSearch search_scene(SceneControl task, const SceneSearchOptions& options = {});
 
 }  // namespace lagroid::multibody

@@ -16,17 +16,17 @@ ArrowMomenta<double> momenta_of(const ControlledScene& scene, int f, const Contr
                                 const ControlledNode& to, double h) {
   if (f < scene.linear()) {
     const auto i = std::size_t(f);
-    return arrow_momenta<double>(scene.inertia(f), Vec(to.places[i] - from.places[i]), h);
+    return arrow_momenta<double>(scene.inertia(f), scene.drag(f), Vec(to.places[i] - from.places[i]), h);
   }
   const auto r = std::size_t(f - scene.linear());
-  return arrow_momenta<double>(scene.inertia(f), scene.rotation(), Mat(from.attitudes[r].transpose() * to.attitudes[r]),
-                               h);
+  return arrow_momenta<double>(scene.inertia(f), scene.drag(f), scene.rotation(),
+                               Mat(from.attitudes[r].transpose() * to.attitudes[r]), h);
 }
 
 }  // namespace
 
-SceneTranscription::SceneTranscription(ControlledScene& scene, ScenePath start)
-    : scene_(scene), now_(std::move(start)), tried_(now_) {
+SceneTranscription::SceneTranscription(ControlledScene& scene, ScenePath start, Coordinates coordinates)
+    : scene_(scene), coordinates_(coordinates), now_(std::move(start)), tried_(now_) {
   const SceneControl& task = scene.task();
   for (int j = 0; j < scene.actuators(); ++j) {
     const Actuator& each = task.actuators[std::size_t(j)];
@@ -38,7 +38,7 @@ SceneTranscription::SceneTranscription(ControlledScene& scene, ScenePath start)
   sizes_.control = scene.actuators() + scene.joints();
   sizes_.node_equality = std::max(scene.joints(), last);
   sizes_.equality = equations() + sizes_.node_equality;
-  sizes_.inequality = int(task.keep_outs.size() + bounds_.size());
+  sizes_.inequality = scene.limits().size() + int(bounds_.size());
   sizes_.stages = now_.stages();
   TranscriptionPhase& phase = sizes_.phases.emplace_back();
   phase.end = sizes_.stages;
@@ -53,6 +53,7 @@ SceneTranscription::SceneTranscription(ControlledScene& scene, ScenePath start)
   along_.resize(scene.n(), scene.joints());
   reaction_.resize(scene.joints(), scene.joints());
   slope_.resize(scene.n());
+  slopes_of_velocities_.resize(scene.n(), scene.n());
   bent_.resize(scene.joints());
 }
 
@@ -71,12 +72,19 @@ void SceneTranscription::values(StageValues& out) const {
         equality[n + 3 * f + i] = p.target(i) - to.momenta(3 * f + i);
       }
     }
+    if (scene_.is_damped()) {
+      const DamperForces<double>& damping = scene_.dampers(from, to);
+      for (int i = 0; i < n; ++i) {
+        equality[i] += damping(End::source, i);
+        equality[n + i] += damping(End::target, i);
+      }
+    }
     const double* u = tried_.controls[k];
     double cost = task.duration_weight;
     for (int j = 0; j < actuators; ++j) cost += task.actuators[std::size_t(j)].weight * u[j] * u[j];
     out.cost[k][0] = h * cost;
     for (std::size_t b = 0; b < bounds_.size(); ++b)
-      out.inequality[k][task.keep_outs.size() + b] = bounds_[b].sign * (u[bounds_[b].control] - bounds_[b].value);
+      out.inequality[k][before_bounds() + int(b)] = bounds_[b].sign * (u[bounds_[b].control] - bounds_[b].value);
   }
   for (long k = 0; k <= sizes_.stages; ++k) {
     const ControlledNode& node = tried_.nodes[std::size_t(k)];
@@ -95,8 +103,13 @@ void SceneTranscription::values(StageValues& out) const {
       }
     }
     if (k == 0) continue;
-    for (std::size_t m = 0; m < task.keep_outs.size(); ++m)
-      out.inequality[k - 1][m] = task.keep_outs[m].value(at(task.keep_outs[m].site));
+    const NodeLimits& limits = scene_.limits();
+    for (int i = 0; i < limits.on_places(); ++i) out.inequality[k - 1][i] = limits.value(i, at);
+    if (limits.on_velocities() > 0) {
+      const std::vector<double> velocities = scene_.velocities(node);
+      for (int i = 0; i < limits.on_velocities(); ++i)
+        out.inequality[k - 1][limits.on_places() + i] = limits.value_of_speed(i, velocities);
+    }
     double* conditions = out.equality[k - 1] + equations();
     if (k < sizes_.stages) {
       for (int row = 0; row < joints; ++row) conditions[row] = at.joint(row);
@@ -119,7 +132,8 @@ void SceneTranscription::derivatives(const StageRows& lambda, const StageRows& z
   for (long k = 0; k < sizes_.stages; ++k) {
     add_cost(block(k));
     add_kinetic(k, block(k));
-    double* bounds = out.inequality[k] + int(scene_.task().keep_outs.size()) * variables_;
+    if (scene_.is_damped()) add_dampers(k, block(k));
+    double* bounds = out.inequality[k] + before_bounds() * variables_;
     for (std::size_t b = 0; b < bounds_.size(); ++b)
       bounds[int(b) * variables_ + sizes_.at_control() + bounds_[b].control] = bounds_[b].sign;
   }
@@ -138,7 +152,7 @@ void SceneTranscription::derivatives(const StageRows& lambda, const StageRows& z
     if (k == 0) continue;
     bend_along_joints(k - 1, End::target, block(k - 1));
     if (!is_last) bend_along_joints(k, End::source, block(k));
-    if (is_last) add_end_momenta(node, block(k - 1));
+    add_momenta(node, is_last, block(k - 1));
   }
 }
 
@@ -166,12 +180,12 @@ void SceneTranscription::keep_joints(const NodeForces<SecondNumber>& at, int lef
 /// sum_i nu_i C_i'' more, nu = -(D W D^T)^{-1} D W g.
 void SceneTranscription::bend_along_joints(long stage, End end, const Block& out) const {
   const int n = scene_.n(), joints = scene_.joints();
-  if (joints == 0) return;
+  if (joints == 0 || coordinates_ == Coordinates::straight) return;
   const int node = end == End::source ? 0 : sizes_.at_target();
   slope_.setZero();
   for (int row = 0; row < sizes_.equalities_of(stage); ++row)
     for (int i = 0; i < n; ++i) slope_(i) += out.lambda[row] * out.equality[row * variables_ + node + i];
-  for (int row = 0; row < int(scene_.task().keep_outs.size()); ++row)
+  for (int row = 0; row < before_bounds(); ++row)
     for (int i = 0; i < n; ++i) slope_(i) += out.z[row] * out.inequality[row * variables_ + node + i];
   bent_.noalias() = along_.transpose() * slope_;
   bent_ = factor_.solve(bent_).eval();
@@ -213,7 +227,7 @@ void SceneTranscription::add_kinetic(long stage, const Block& out) const {
     const double* before = out.lambda + 3 * f;
     const double* after = out.lambda + n + 3 * f;
     const auto place = [&](int i) { return i < 3 ? source + 3 * f + i : i < 6 ? target + 3 * f + i - 3 : t; };
-    // -F- and F+ along both ends and log h.
+    // -F- and F+, drag and all, along both ends and log h.
     const auto put = [&](const auto& momenta) {
       auto lagrangian = momenta.target(0) * after[0] - momenta.source(0) * before[0];
       for (int i = 1; i < 3; ++i) lagrangian += momenta.target(i) * after[i] - momenta.source(i) * before[i];
@@ -234,15 +248,44 @@ void SceneTranscription::add_kinetic(long stage, const Block& out) const {
     }
     if (f < scene_.linear()) {
       const Vec d = to.places[std::size_t(f)] - from.places[std::size_t(f)];
-      put(arrow_momenta<J>(scene_.inertia(f), Vector<J, 3>(d.cast<J>() + b - a), h));
+      put(arrow_momenta<J>(scene_.inertia(f), scene_.drag(f), Vector<J, 3>(d.cast<J>() + b - a), h));
     } else {
       const auto r = std::size_t(f - scene_.linear());
       const Mat turn = from.attitudes[r].transpose() * to.attitudes[r];
       const Matrix<J, 3, 3> moved =
           SO3::inverse(turn_of(scene_.rotation(), a)) * Matrix<J, 3, 3>(turn.cast<J>() * turn_of(scene_.rotation(), b));
-      put(arrow_momenta<J>(scene_.inertia(f), scene_.rotation(), moved, h));
+      put(arrow_momenta<J>(scene_.inertia(f), scene_.drag(f), scene_.rotation(), moved, h));
     }
   }
+}
+
+void SceneTranscription::add_dampers(long stage, const Block& out) const {
+  const int n = scene_.n();
+  const ControlledNode& from = now_.nodes[std::size_t(stage)];
+  const ControlledNode& to = now_.nodes[std::size_t(stage) + 1];
+  const auto place = [&](const FactorEnd& of) {
+    return (of.end == End::source ? 0 : sizes_.at_target()) + 3 * of.factor;
+  };
+  std::vector<FactorEnd> varied;
+  for (const End end : {End::source, End::target})
+    for (const int factor : scene_.damped_factors()) varied.push_back({end, factor});
+  for (std::size_t p = 0; p < varied.size(); ++p)
+    for (std::size_t q = p; q < varied.size(); ++q) {
+      const bool is_one = p == q;
+      const DamperForces<SecondNumber>& at = scene_.dampers(from, to, varied[p], varied[q]);
+      SecondNumber weighed = SecondNumber(0);
+      for (const End end : {End::source, End::target})
+        for (const int factor : scene_.damped_factors())
+          for (int i = 3 * factor; i < 3 * factor + 3; ++i) {
+            const int equation = (end == End::source ? 0 : n) + i;
+            weighed += at(end, i) * out.lambda[equation];
+            for (int j = 0; j < 3 && is_one; ++j)
+              out.equality[equation * variables_ + place(varied[p]) + j] += at(end, i).left(j);
+          }
+      for (int i = 0; i < 3; ++i)
+        for (int j = is_one ? i : 0; j < 3; ++j)
+          add_to(out.hessian, place(varied[p]) + i, place(varied[q]) + j, weighed.mixed(i, j));
+    }
 }
 
 void SceneTranscription::add_forces(const NodeForces<SecondNumber>& at, int left, int right, End end,
@@ -311,9 +354,13 @@ void SceneTranscription::add_conditions(const ControlledNode& node, const NodeFo
       if (is_one) row[target + 3 * left + i] += value.left(i);
     }
   };
-  const auto& keep_outs = scene_.task().keep_outs;
-  for (std::size_t m = 0; m < keep_outs.size(); ++m)
-    put(keep_outs[m].value(at(keep_outs[m].site)), out.z[m], out.inequality + int(m) * variables_);
+  const NodeLimits& limits = scene_.limits();
+  for (int i = 0; i < limits.on_places(); ++i) put(limits.value(i, at), out.z[i], out.inequality + i * variables_);
+  if (limits.on_velocities() > 0) scene_.velocities(node, -1, varied_velocities_);
+  for (int k = 0; k < limits.on_velocities(); ++k) {
+    const int i = limits.on_places() + k;
+    put(limits.value_of_speed(k, varied_velocities_), out.z[i], out.inequality + i * variables_);
+  }
   double* row = out.equality + equations() * variables_;
   const double* lambda = out.lambda + equations();
   if (!is_last) {
@@ -327,32 +374,58 @@ void SceneTranscription::add_conditions(const ControlledNode& node, const NodeFo
   }
 }
 
-/// The end's conditions along the momenta there: linear in these.
-void SceneTranscription::add_end_momenta(const ControlledNode& node, const Block& out) const {
+/// What a node is to satisfy, along the momenta there: the end's conditions are linear in these, squares of speeds are
+/// not.
+void SceneTranscription::add_momenta(const ControlledNode& node, bool is_last, const Block& out) const {
+  const NodeLimits& limits = scene_.limits();
+  if (!is_last && limits.on_velocities() == 0) return;
   const int places = sizes_.at_target(), momenta = places + scene_.n();
+  const auto put = [&](const SecondNumber& value, double weight, double* row, int left, int right) {
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i)
+        add_to(out.hessian, places + 3 * left + i, momenta + 3 * right + j, weight * value.mixed(i, j));
+      if (left == 0) row[momenta + 3 * right + j] += value.right(j);
+    }
+  };
   for (int left = 0; left < scene_.factors(); ++left) {
     scene_.forces(node, left, -1);
     for (int right = 0; right < scene_.factors(); ++right) {
-      scene_.end_values(node, right, varied_end_);
-      double* row = out.equality + equations() * variables_;
-      const double* lambda = out.lambda + equations();
-      for (const int k : scene_.end_rows()) {
-        const SecondNumber& value = varied_end_[std::size_t(k)];
-        for (int j = 0; j < 3; ++j) {
-          for (int i = 0; i < 3; ++i)
-            add_to(out.hessian, places + 3 * left + i, momenta + 3 * right + j, *lambda * value.mixed(i, j));
-          if (left == 0) row[momenta + 3 * right + j] += value.right(j);
+      if (is_last) {
+        scene_.end_values(node, right, varied_end_);
+        double* row = out.equality + equations() * variables_;
+        const double* lambda = out.lambda + equations();
+        for (const int k : scene_.end_rows()) {
+          put(varied_end_[std::size_t(k)], *lambda++, row, left, right);
+          row += variables_;
         }
-        row += variables_;
-        ++lambda;
       }
+      if (limits.on_velocities() == 0) continue;
+      scene_.velocities(node, right, varied_velocities_);
+      for (int k = 0; k < limits.on_velocities(); ++k) {
+        const int i = limits.on_places() + k;
+        put(limits.value_of_speed(k, varied_velocities_), out.z[i], out.inequality + i * variables_, left, right);
+      }
+      for (int i = 0; i < scene_.n() && left == 0; ++i)
+        for (int j = 0; j < 3; ++j)
+          slopes_of_velocities_(i, 3 * right + j) = varied_velocities_[std::size_t(i)].right(j);
     }
+  }
+  for (int k = 0; k < limits.on_velocities(); ++k) {
+    const double weight = 2 * out.z[limits.on_places() + k] * limits.weight(k);
+    for (const int c : limits.components(k))
+      for (int i = 0; i < scene_.n(); ++i)
+        for (int j = 0; j < scene_.n(); ++j)
+          out.hessian[(momenta + i) * variables_ + momenta + j] +=
+              weight * slopes_of_velocities_(c, i) * slopes_of_velocities_(c, j);
   }
 }
 
 void SceneTranscription::try_displacement(const TrajectoryDisplacement& by, double fraction) {
   for (std::size_t k = 1; k < now_.nodes.size(); ++k)
-    scene_.displace_along_joints(now_.nodes[k], by.nodes[long(k)], fraction, tried_.nodes[k]);
+    if (coordinates_ == Coordinates::straight)
+      scene_.displace(now_.nodes[k], by.nodes[long(k)], fraction, tried_.nodes[k]);
+    else
+      scene_.displace_along_joints(now_.nodes[k], by.nodes[long(k)], fraction, tried_.nodes[k]);
   tried_.controls = now_.controls;
   add(tried_.controls, fraction, by.controls);
   tried_.step = now_.step * std::exp(fraction * by.durations.front());

@@ -2,10 +2,11 @@
 /// The Transcription of a controlled scene of bodies (SceneControl), with sizes that are known when it runs. Of arrow
 /// g_k from (q_k, mu_k) to (q_{k+1}, mu_{k+1}), with controls u_k and multipliers kappa_k of the joints,
 ///
-///     mu_k + h/2 (f + sum_j u_j B_j)(q_k) + D(q_k)^T kappa_k = F-(g_k),
-///     F+(g_k) + h/2 (f + sum_j u_j B_j)(q_{k+1}) = mu_{k+1},    C(q_{k+1}) = 0:
+///     mu_k + h/2 (f + sum_j u_j B_j)(q_k) + f-(g_k) + D(q_k)^T kappa_k = F-(g_k),
+///     F+(g_k) + f+(g_k) + h/2 (f + sum_j u_j B_j)(q_{k+1}) = mu_{k+1},    C(q_{k+1}) = 0:
 ///
-/// the steps of Multibody, with half of the controls' impulse at either end. Controls of a stage are (u, kappa); where
+/// the steps of Multibody, with half of the controls' impulse at either end, and f-, f+ the discrete forces of drag and
+/// dampers (arrow_momenta.hpp, damper_forces.hpp). Controls of a stage are (u, kappa); where
 /// a node is kept, momenta are those before the joints' reaction.
 ///
 ///     ControlledScene scene(task);
@@ -13,8 +14,9 @@
 ///     InteriorPoint solver(transcription);
 ///
 /// Nodes are displaced in coordinates along which the joints are linear (ControlledScene::displace_along_joints): a
-/// path on which they hold stays there. Derivatives are automatic and exact, second ones included: what acts at a node
-/// in blocks of two factors (SecondNumber), kinetic terms factor by factor. Requires a path of the scene's nodes, the
+/// path on which they hold stays there; or straight, in one chart for all paths (ipopt/scene_chart.hpp). Derivatives
+/// are automatic and exact, second ones included: what acts at a node in blocks of two factors (SecondNumber), dampers
+/// in blocks of two factors at either end, kinetic terms factor by factor. Requires a path of the scene's nodes, the
 /// first its start. The scene must outlive it, and serves one transcription at a time. Nothing throws.
 ///
 /// Ober-Bloebaum, Junge, Marsden, ESAIM COCV 17 (2011); decision 94.
@@ -37,9 +39,16 @@ struct ScenePath {
 
 class SceneTranscription final : public Transcription {
  public:
-  SceneTranscription(ControlledScene& scene, ScenePath start);
+  /// By what nodes are displaced: by coordinates along which the joints are linear, or by plain ones.
+  enum class Coordinates { along_joints, straight };
+
+  SceneTranscription(ControlledScene& scene, ScenePath start, Coordinates coordinates = Coordinates::along_joints);
 
   const ScenePath& path() const { return now_; }
+  /// The path becomes another one of as many stages.
+  void stand_at(const ScenePath& path) { now_ = tried_ = path; }
+  /// How many inequalities a stage has before those of the controls' bounds.
+  int before_bounds() const { return sizes_.inequality - int(bounds_.size()); }
   /// How many equations a stage has before those of joints and of the end.
   int equations() const { return 2 * scene_.n(); }
 
@@ -72,15 +81,16 @@ class SceneTranscription final : public Transcription {
 
   /// What acts at a node as the source (End::source) or the target of a stage.
   void add_forces(const NodeForces<SecondNumber>& at, int left, int right, End end, const Block& out) const;
-  /// Joints and what is kept out of, at the target of a stage; `is_last` asks for the end's conditions instead.
+  /// Joints and limits, at the target of a stage; `is_last` asks for the end's conditions in place of the joints'.
   void add_conditions(const ControlledNode& node, const NodeForces<SecondNumber>& at, int left, int right, bool is_last,
                       const Block& out) const;
-  void add_end_momenta(const ControlledNode& node, const Block& out) const;
+  void add_momenta(const ControlledNode& node, bool is_last, const Block& out) const;
   /// Keeps what second derivatives along the joints need of the node.
   void keep_joints(const NodeForces<SecondNumber>& at, int left, int right) const;
   /// Second derivatives are along displacements by which the joints are linear.
   void bend_along_joints(long stage, End end, const Block& out) const;
   void add_kinetic(long stage, const Block& out) const;
+  void add_dampers(long stage, const Block& out) const;
   void add_cost(const Block& out) const;
   void add_to(double* hessian, int row, int column, double x) const {
     hessian[row * variables_ + column] += x;
@@ -88,13 +98,15 @@ class SceneTranscription final : public Transcription {
   }
 
   ControlledScene& scene_;
+  Coordinates coordinates_;
   TranscriptionSizes sizes_;
   int variables_ = 0;
   std::vector<bool> free_start_, free_end_;
   std::vector<Bound> bounds_;
   ScenePath now_, tried_;
   mutable std::vector<double> end_values_;
-  mutable std::vector<SecondNumber> varied_end_;
+  mutable std::vector<SecondNumber> varied_end_, varied_velocities_;
+  mutable Eigen::MatrixXd slopes_of_velocities_;          ///< by the momenta of a node
   mutable std::vector<double> joint_hessians_;            ///< of the node that derivatives are at, row after row
   mutable Eigen::MatrixXd gradients_, along_, reaction_;  ///< D, W D^T and D W D^T there
   mutable Eigen::VectorXd slope_, bent_;

@@ -13,53 +13,35 @@
 
 namespace lagroid::multibody {
 
-namespace {
-
-/// The numbers, those from `first` on varied.
-std::vector<VariedNumber> varied_from(const std::vector<double>& numbers, int first) {
-  std::vector<VariedNumber> out(numbers.begin(), numbers.end());
-  for (int k = std::max(0, first); k < std::min(int(numbers.size()), first + varied_at_once); ++k)
-    out[std::size_t(k)] = VariedNumber::variable(numbers[std::size_t(k)], k - first);
-  return out;
-}
-
-/// Of the numbers by which a scene is varied, those by which its joints would not hold at the start.
-std::vector<int> torn_in(VariedScene& scene, const SceneSizes& sizes, const std::vector<double>& numbers, int first) {
-  constexpr double noticed = 1e-9;
-  const std::vector<VariedScene::Held> held = scene.held(sizes);
-  std::vector<int> out;
-  for (int k = first; k < std::min(int(numbers.size()), first + varied_at_once); ++k) {
-    const double number = std::abs(numbers[std::size_t(k)]);
-    const auto tears = [&](const VariedScene::Held& each) {
-      return std::abs(each.left.tangent(k - first)) * (number > 0 ? number : 1) > noticed * each.size;
-    };
-    if (std::any_of(held.begin(), held.end(), tears)) out.push_back(k);
-  }
-  return out;
-}
-
-}  // namespace
-
 LinearisedScene::LinearisedScene(Multibody motion, std::vector<std::string> names, std::vector<double> numbers,
-                                 const Write& write, std::optional<Stages> stages)
+                                 Write write, std::optional<Stages> stages)
     : motion_(std::move(motion)),
       names_(std::move(names)),
       numbers_(std::move(numbers)),
-      sizes_(sizes_of(motion_)),
-      derivatives_(sizes_, numbers_, write),
+      write_(std::move(write)),
       before_(motion_.state()),
       linear_(stages ? stages->shares.size() : 1),
       stages_(std::move(stages)),
-      begin_(0, sizes_.states(), int(names_.size())) {
+      begin_(0, states(), int(names_.size())) {
   if (names_.size() != numbers_.size()) throw std::invalid_argument("a name for each number");
   if (motion_.index() != 0) throw std::invalid_argument("derivatives are of a motion from its start on");
-  if (before_.control) throw std::invalid_argument("controlled steps have no derivative here: take equal ones");
+  if (before_.control)
+    throw std::invalid_argument("steps are controlled: their derivatives are those of LinearisedControlledScene");
   if (before_.stages.size() != (stages_ ? stages_->shares.size() : 0))
     throw std::invalid_argument("composed steps are linearised stage by stage: give these");
-  scenes_.emplace_back(write(varied_from(numbers_, int(numbers_.size()))), motion_);
-  for (int first = 0; first < parameters(); first += varied_at_once)
-    scenes_.emplace_back(write(varied_from(numbers_, first)), motion_);
-  find_start();
+  left_out_ = variations().sizes().left_out;
+  start_ = variations().start(names_, numbers_);
+  begin_.end_by_start.leftCols(states()).setIdentity();
+  begin_.end_by_start.rightCols(parameters()) = start_;
+}
+
+SceneVariations& LinearisedScene::variations() const {
+  std::vector<char> acts = motion_.switches().on;
+  const std::vector<char>& left_out = motion_.model().rows.left_out;
+  acts.insert(acts.end(), left_out.begin(), left_out.end());
+  const auto found = variations_.find(acts);
+  if (found != variations_.end()) return found->second;
+  return variations_.emplace(std::move(acts), SceneVariations(motion_, numbers_, write_)).first->second;
 }
 
 const StepDerivative& LinearisedScene::stage(int k) const {
@@ -67,113 +49,57 @@ const StepDerivative& LinearisedScene::stage(int k) const {
   return *linear_[std::size_t(begins_ ? k - 1 : k)];
 }
 
-void LinearisedScene::find_start() {
-  start_ = Eigen::MatrixXd::Zero(sizes_.states(), parameters());
-  for (int first = 0; first < parameters(); first += varied_at_once) {
-    VariedScene& scene = scenes_[std::size_t(1 + first / varied_at_once)];
-    lagroid::detail::put_tangents(scene.start(sizes_), first, start_);
-    for (const int k : torn_in(scene, sizes_, numbers_, first))
-      throw WithoutDerivative(
-          fmt::format("there is no derivative by {}: with another one the joints would not hold at the start, or its "
-                      "velocities not agree with them",
-                      names_[std::size_t(k)]));
-  }
-  begin_.end_by_start.leftCols(sizes_.states()).setIdentity();
-  begin_.end_by_start.rightCols(parameters()) = start_;
-}
-
 StepReport LinearisedScene::advance() {
   before_ = motion_.state();
-  return motion_.advance();
+  const StepReport report = motion_.advance();
+  end_ = motion_.state();
+  displacements_ = motion_.displacements();
+  return report;
 }
 
 bool LinearisedScene::linearise() {
   begins_ = before_.index == 0 && parameters() > 0;
-  if (stages_) return linearise_stages();
-  const SceneState& after = motion_.state();
-  return linearise(
-      {before_, motion_.displacements(), after.guess.turns, after.guess.multipliers[0], after.at.time, after.step},
-      before_.index == 0, linear_.front());
+  if (stages_) return linearise_stages(before_, motion_.step(), false, linear_);
+  return linearise(solved_step(before_, end_, displacements_), false, linear_.front());
 }
 
 /// The stages of a composed step are made again, one by one.
-bool LinearisedScene::linearise_stages() {
+bool LinearisedScene::linearise_stages(const SceneState& before, double size, bool by_times,
+                                       std::vector<std::optional<SparseStep>>& out) {
   Multibody& motion = stages_->motion;
-  SceneState state = before_;
+  SceneState state = before;
   state.stages.clear();
+  if (motion.switches().on != motion_.switches().on) {
+    motion.restore(state);
+    motion.switch_to(motion_.switches().on);
+  }
   bool regular = true;
-  for (std::size_t k = 0; k < linear_.size(); ++k) {
+  for (std::size_t k = 0; k < out.size(); ++k) {
     const double share = stages_->shares[k];
-    state.guess = before_.stages[k];
+    state.guess = before.stages[k];
     for (auto& multipliers : state.guess.multipliers)
       for (double& lambda : multipliers) lambda /= share;
     for (Vec& turn : state.guess.turns) turn /= share;
     motion.restore(state);
-    if (!motion.advance_by(share * motion.step()).converged()) return false;
-    const SceneState& after = motion.state();
-    const SolvedStep solved{
-        state, motion.displacements(), after.guess.turns, after.guess.multipliers[0], after.at.time, after.step};
-    regular = linearise(solved, before_.index == 0 && k == 0, linear_[k]) && regular;
-    state = after;
+    if (!motion.advance_by(share * size).converged()) return false;
+    regular = linearise(solved_step(state, motion.state(), motion.displacements()), by_times, out[k]) && regular;
+    state = motion.state();
   }
   return regular;
 }
 
-bool LinearisedScene::linearise(const SolvedStep& solved, bool is_first, std::optional<SparseStep>& out) {
-  derivatives_.find({motion_, scenes_}, solved, out);
-  if (!out->factor()) return false;
-  if (is_first && parameters() > 0 && !sizes_.left_out.empty()) require_dependence(solved, *out);
+bool LinearisedScene::linearise(const SolvedStep& solved, bool by_times, std::optional<SparseStep>& out) {
+  SceneVariations& varied = variations();
+  if (!varied.linearise(motion_, solved, by_times, out)) return false;
+  if (solved.before.index == 0 && parameters() > 0 && !varied.sizes().left_out.empty())
+    varied.require_dependence(solved, *out, start_, names_);
   return true;
 }
 
-void LinearisedScene::require_dependence(const SolvedStep& solved, const SparseStep& step) {
-  constexpr double noticed = 1e-6;
-  const int unknowns = sizes_.unknowns(), states = sizes_.states();
-  Eigen::MatrixXd left(Eigen::Index(sizes_.left_out.size()), unknowns + states + parameters());
-  for (int first = 0; first < unknowns + states; first += varied_at_once) {
-    scenes_.front().step(solved, sizes_, first);
-    lagroid::detail::put_tangents(scenes_.front().left_out(), first, left.leftCols(unknowns + states));
-  }
-  for (int first = 0; first < parameters(); first += varied_at_once) {
-    VariedScene& scene = scenes_[std::size_t(1 + first / varied_at_once)];
-    scene.step(solved, sizes_, unknowns + states);
-    lagroid::detail::put_tangents(scene.left_out(), first, left.rightCols(parameters()));
-  }
-  Eigen::MatrixXd by(states + parameters(), parameters());
-  by << start_, Eigen::MatrixXd::Identity(parameters(), parameters());
-  Eigen::MatrixXd found = step.unknowns(by);
-  found.topRows(3 * sizes_.linear) -= by.topRows(3 * sizes_.linear);  // w, of v + w
-  const Eigen::MatrixXd by_numbers = left.rightCols(states + parameters()) * by;
-  const Eigen::MatrixXd change = by_numbers + left.leftCols(unknowns) * found;
-  const Eigen::MatrixXd terms = by_numbers.cwiseAbs() + left.leftCols(unknowns).cwiseAbs() * found.cwiseAbs();
-  for (int k = 0; k < parameters(); ++k)
-    if ((change.col(k).cwiseAbs().array() > noticed * terms.col(k).maxCoeff()).any())
-      throw WithoutDerivative(fmt::format(
-          "there is no derivative by {}: equations of the joints that depend on others would not, with another one",
-          names_[std::size_t(k)]));
-}
-
 NodeValues LinearisedScene::observe() const {
-  const SceneState& node = motion_.state();
-  const int states = sizes_.states();
-  NodeValues out;
-  const auto put = [&](const VariedNumbers& seen, int first, int count, int column) {
-    if (out.values.size() == 0) {
-      out.values.resize(seen.size());
-      out.derivatives.resize(seen.size(), states + parameters());
-    }
-    for (Eigen::Index i = 0; i < seen.size(); ++i) {
-      out.values(i) = seen(i).value;
-      for (int k = first; k < std::min(count, first + varied_at_once); ++k)
-        out.derivatives(i, column + k) = seen(i).tangent(k - first);
-    }
-  };
-  for (int first = 0; first < states; first += varied_at_once)
-    put(scenes_.front().observe(node, sizes_, first), first, states, 0);
-  for (int first = 0; first < parameters(); first += varied_at_once)
-    put(scenes_[std::size_t(1 + first / varied_at_once)].observe(node, sizes_, states), first, parameters(), states);
-  if (node.index == 0 && parameters() > 0)
-    out.derivatives.rightCols(parameters()) += out.derivatives.leftCols(states) * start_;
+  NodeValues out = variations().observe(motion_.state(), /*by_time=*/false);
+  if (motion_.index() == 0 && parameters() > 0 && out.values.size() > 0)
+    out.derivatives.rightCols(parameters()) += out.derivatives.leftCols(states()) * start_;
   return out;
 }
 
@@ -273,16 +199,13 @@ void displace(Multibody& motion, const Eigen::VectorXd& by) {
 }
 
 Eigen::MatrixXd LinearisedScene::allowed_directions() const {
-  const int states = sizes_.states(), n = sizes_.n();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Identity(states, states);
+  const int n = states() / 2;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Identity(states(), states());
   if (motion_.rows() == 0) return out;
   const std::vector<int> rows = holonomic_rows(motion_);
   const Eigen::MatrixXd gradients = gradients_of(motion_, rows), along = reactions_of(motion_, gradients);
   out.topLeftCorner(n, n) -= along * (gradients * along).partialPivLu().solve(gradients);
-  Eigen::MatrixXd momenta(n, states);
-  for (int first = 0; first < states; first += varied_at_once)
-    lagroid::detail::put_tangents(scenes_.front().tangent_momenta(motion_.state(), sizes_, first), first, momenta);
-  out.bottomRows(n) = momenta * out;
+  out.bottomRows(n) = variations().tangent_momenta(motion_.state()).derivatives.leftCols(states()) * out;
   return out;
 }
 

@@ -22,6 +22,8 @@ class GenericStep {
         multipliers_(near.multipliers),
         end_(near.end),
         h_(near.h) {
+    before_.at.time += 0.7 * h_;
+    end_ += 0.7 * h_;
     double size = 0;
     for (const Vec& x : before_.at.x) size = std::max(size, x.lpNorm<Eigen::Infinity>());
     const double part = 1e-2 * (size > 0 ? size : 1);
@@ -62,16 +64,16 @@ template <class Visit> void each_row(const VariedScene& scene, const Visit& visi
 
 }  // namespace
 
-SceneDerivatives::SceneDerivatives(SceneSizes sizes, std::vector<double> numbers, WriteScene write)
+SceneDerivatives::SceneDerivatives(SceneSizes sizes, std::vector<double> numbers, WriteScene write, double step)
     : sizes_(std::move(sizes)),
       numbers_(std::move(numbers)),
       write_(std::move(write)),
-      columns_(std::size_t(rows()) + numbers_.size()),
+      columns_(std::size_t(time_column()) + (step > 0 ? 2 : 0)),
       expected_(std::size_t(rows())) {
   std::mt19937 random;
   std::uniform_real_distribution<double> amount(0.5, 1.5);
   for (int k = 0; k < columns(); ++k) {
-    const double number = k < rows() ? 1 : std::abs(numbers_[std::size_t(k - rows())]);
+    const double number = k < rows() ? 1 : k < time_column() ? std::abs(numbers_[std::size_t(k - rows())]) : step;
     amounts_.push_back(amount(random) * (number > 0 ? number : 1));
   }
 }
@@ -98,19 +100,21 @@ void SceneDerivatives::see(const VariedMotion& of, const SolvedStep& solved) {
         if (value.tangent(k - first) != 0) columns_[std::size_t(k)].push_back(row);
     });
   };
-  for (int first = 0; first < rows(); first += varied_at_once) {
+  const auto look_along = [&](int first, int last) {
     VariedScene& scene = of.scenes.front();
     scene.step(solved, sizes_, tangents([&](int column) {
                  const int k = column - first;
                  return 0 <= k && k < varied_at_once ? VariedTangent::unit(k) : VariedTangent{};
                }));
-    look(scene, first, rows());
-  }
-  for (int first = rows(); first < columns(); first += varied_at_once) {
+    look(scene, first, last);
+  };
+  for (int first = 0; first < rows(); first += varied_at_once) look_along(first, rows());
+  for (int first = rows(); first < time_column(); first += varied_at_once) {
     VariedScene& scene = of.scenes[std::size_t(1 + (first - rows()) / varied_at_once)];
     scene.step(solved, sizes_, rows());
-    look(scene, first, columns());
+    look(scene, first, time_column());
   }
+  if (time_column() < columns()) look_along(time_column(), columns());
   for (std::vector<int>& column : columns_) {
     std::sort(column.begin(), column.end());
     column.erase(std::unique(column.begin(), column.end()), column.end());
@@ -124,6 +128,7 @@ template <class TangentOf> std::vector<VariedTangent> SceneDerivatives::tangents
     VariedTangent& displacement = out[std::size_t(k)];
     displacement = displacement - out[std::size_t(sizes_.unknowns() + k)];
   }
+  for (int k = time_column(); k < columns(); ++k) out.push_back(of(k));
   return out;
 }
 
@@ -136,7 +141,7 @@ void SceneDerivatives::arrange(const Multibody& motion) {
     pattern->rows.insert(pattern->rows.end(), column.begin(), column.end());
     pattern->begins.push_back(int(pattern->rows.size()));
   }
-  // Columns of numbers first, so that few scenes are varied by them.
+  // Columns of numbers first, and of times, so that few scenes are varied by them.
   std::vector<int> order(columns_.size());
   std::iota(order.begin(), order.end(), 0);
   std::rotate(order.begin(), order.begin() + rows(), order.end());

@@ -13,6 +13,9 @@
 /// later, one more direction varies everything at once, by known amounts, at every step: where it is not what the
 /// entries say, they are asked again.
 ///
+/// Of steps that are made in part or whose sizes vary there are two more columns, after those of the numbers: the time
+/// at which the step starts, and its size.
+///
 /// Requires a function that gives numbers their tangents. Throws what that function throws.
 
 #include <lagroid/solvers/sensitivity/sparse/sparse_step.hpp>
@@ -38,9 +41,10 @@ struct VariedMotion {
 
 class SceneDerivatives {
  public:
-  SceneDerivatives(SceneSizes sizes, std::vector<double> numbers, WriteScene write);
+  /// By the time and the size of steps, too, where these are of about the size `step`; zero: not by them.
+  SceneDerivatives(SceneSizes sizes, std::vector<double> numbers, WriteScene write, double step = 0);
 
-  /// The derivatives of a step, by unknowns, states and numbers; not yet factored.
+  /// The derivatives of a step, by unknowns, states, numbers and times; not yet factored.
   void find(const VariedMotion& of, const SolvedStep& solved, std::optional<SparseStep>& out);
 
   /// How often the equations are evaluated for one step.
@@ -55,14 +59,16 @@ class SceneDerivatives {
     double amount;  ///< of its column, where everything is varied
   };
   struct Pass {
-    std::vector<VariedTangent> tangents;  ///< of unknowns and states
+    std::vector<VariedTangent> tangents;  ///< of unknowns, states and times
     std::vector<Entry> of_equations, of_end;
     std::optional<VariedScene> scene;  ///< one that is varied by numbers
   };
 
   int columns() const { return int(columns_.size()); }
   int rows() const { return sizes_.unknowns() + sizes_.states(); }
-  /// Of unknowns and states, from those of the columns.
+  /// The column of the time; past the last where there is none.
+  int time_column() const { return rows() + int(numbers_.size()); }
+  /// Of unknowns, states and times, from those of the columns.
   template <class TangentOf> std::vector<VariedTangent> tangents(const TangentOf& of) const;
   /// Adds the entries that a step has.
   void see(const VariedMotion& of, const SolvedStep& solved);

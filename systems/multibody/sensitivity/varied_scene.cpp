@@ -82,7 +82,8 @@ std::span<const VariedTangent> VariedScene::unit_tangents(int count, int first) 
 /// A node's places, attitudes and momenta, its states varied.
 void VariedScene::place(const SceneState& node, const SceneSizes& sizes, std::span<const VariedTangent> tangents) {
   const int n = sizes.n();
-  before_.time = node.at.time;
+  const auto time = std::size_t(sizes.states());
+  before_.time = tangents.size() > time ? V(node.at.time, tangents[time]) : V(node.at.time);
   for (int f = 0; f < sizes.linear; ++f) {
     const auto i = std::size_t(f);
     before_.x[i] = varied(node.at.x[i], tangents, 3 * f);
@@ -104,6 +105,10 @@ void VariedScene::place(const SceneState& node, const SceneSizes& sizes, std::sp
   }
   place_points(before_);
   for (const Model::Island& island : model_.islands) model_.react(before_, island, gradients_, row_sizes_);
+}
+
+void VariedScene::place(const SceneState& node, const SceneSizes& sizes, int first) {
+  place(node, sizes, unit_tangents(sizes.directions(), first));
 }
 
 template <class Counts>
@@ -148,7 +153,10 @@ void VariedScene::step(const SolvedStep& solved, const SceneSizes& sizes, std::s
   const int n = sizes.n(), unknowns = sizes.unknowns();
   const Model::Factors& factors = model_.factors;
   place(solved.before, sizes, tangents.subspan(std::size_t(unknowns)));
-  after_.time = solved.end;
+  const auto timed = std::size_t(unknowns + sizes.states());
+  const VariedTangent of_size = tangents.size() > timed ? tangents[timed + 1] : VariedTangent{};
+  const V h(solved.h, of_size), per_step = 1.0 / h, half = 0.5 * h;
+  after_.time = V(solved.end, tangents.size() > timed ? tangents[timed] + of_size : VariedTangent{});
   for (int f = 0; f < sizes.linear; ++f) {
     const auto i = std::size_t(f);
     displacements_[i] = varied(solved.displacements[i], tangents, 3 * f);
@@ -165,13 +173,12 @@ void VariedScene::step(const SolvedStep& solved, const SceneSizes& sizes, std::s
     const auto row = std::size_t(sizes.rows[k]);
     multipliers_[row] = V(solved.multipliers[row], tangents[std::size_t(n) + k]);
   }
-  const BasicSceneArrow<V> motion{before_, after_, displacements_, turns_, solved.h};
+  const BasicSceneArrow<V> motion{before_, after_, displacements_, turns_, h};
   if (model_.rows.vakonomic) find_vakonomic_gradients(motion);
 
   // What the node gives, with which the arrow begins.
   model_.act(before_, loads_);
   model_.act(after_, next_loads_);
-  const double half = 0.5 * solved.h;
   for (std::size_t i = 0; i < impulse_.size(); ++i) impulse_[i] = momentum_[i] + half * loads_.on[i];
   for (std::size_t i = 0; i < spin_impulse_.size(); ++i) spin_impulse_[i] = spin_[i] + half * loads_.torque[i];
   react(
@@ -180,13 +187,13 @@ void VariedScene::step(const SolvedStep& solved, const SceneSizes& sizes, std::s
   equations_.resize(unknowns);
   for (int f = 0; f < sizes.linear; ++f) {
     const auto i = std::size_t(f);
-    equations_.segment<3>(3 * f) = factors.inertia[i].cwiseProduct(displacements_[i]) * (1 / solved.h) - impulse_[i];
+    equations_.segment<3>(3 * f) = factors.inertia[i].cwiseProduct(displacements_[i]) * per_step - impulse_[i];
   }
   for (const Model::Dragged& d : factors.dragged)
     equations_.segment<3>(3 * d.factor) += 0.5 * (d.drag * displacements_[std::size_t(d.factor)]);
   for (int r = 0; r < sizes.rotations; ++r) {
     const auto i = std::size_t(r);
-    const BasicRotationIncrement<V> turn{factors.moments[i] * (1 / solved.h), factors.rotation};
+    const BasicRotationIncrement<V> turn{factors.moments[i] * per_step, factors.rotation};
     equations_.segment<3>(3 * (sizes.linear + r)) = turn.momentum(turns_[i]) - spin_impulse_[i];
   }
   for (const int r : factors.damped_turns) {
@@ -326,7 +333,7 @@ void VariedScene::project(const SceneSizes& sizes, double h, std::vector<VariedV
 
 VariedNumbers VariedScene::observe(const SceneState& node, const SceneSizes& sizes, int first) {
   if (observe_ == nullptr) return {};
-  place(node, sizes, unit_tangents(sizes.states(), first));
+  place(node, sizes, first);
   project(sizes, node.step, momentum_, spin_);
   V kinetic = 0, potential = 0;
   for (std::size_t f = 0; f < momentum_.size(); ++f)
@@ -339,7 +346,7 @@ VariedNumbers VariedScene::observe(const SceneState& node, const SceneSizes& siz
 }
 
 VariedNumbers VariedScene::tangent_momenta(const SceneState& node, const SceneSizes& sizes, int first) {
-  place(node, sizes, unit_tangents(sizes.states(), first));
+  place(node, sizes, first);
   const auto is_vakonomic = [](Role role) { return role == Role::vakonomic; };
   const std::vector<double>& multipliers = node.guess.multipliers[0];
   std::vector<V> added(multipliers.begin(), multipliers.end());
@@ -351,6 +358,33 @@ VariedNumbers VariedScene::tangent_momenta(const SceneState& node, const SceneSi
   for (int f = 0; f < sizes.linear; ++f) out.segment<3>(3 * f) = momentum_[std::size_t(f)];
   for (int r = 0; r < sizes.rotations; ++r) out.segment<3>(3 * (sizes.linear + r)) = spin_[std::size_t(r)];
   return out;
+}
+
+VariedNumbers VariedScene::held_places(const SceneState& node, const SceneSizes& sizes, int first) {
+  place(node, sizes, first);
+  const std::vector<VariedVec> at_rest(std::max(momentum_.size(), spin_.size()), VariedVec::Zero());
+  std::vector<V> out;
+  for (const Model::Batch& batch : model_.rows.batches) {
+    if (batch.role != Role::holonomic || !model_.is_on(batch)) continue;
+    const std::size_t before = out.size();
+    out.resize(before + std::size_t(batch.count * batch.joints->rows()));
+    batch.joints->values({before_, before_, at_rest, at_rest, node.step}, batch.first, batch.count,
+                         out.data() + before);
+  }
+  return Eigen::Map<const VariedNumbers>(out.data(), Eigen::Index(out.size()));
+}
+
+V VariedScene::time_scale_rate(const SceneState& node, const SceneSizes& sizes, int first) {
+  place(node, sizes, first);
+  model_.act(before_, loads_);
+  V power = 0, potential = 0;  // of the attractions: -dU/dt, and U
+  for (std::size_t f = 0; f < momentum_.size(); ++f)
+    power += loads_.on[f].dot(momentum_[f].cwiseQuotient(model_.factors.inertia[f]));
+  for (std::size_t r = 0; r < spin_.size(); ++r)
+    power += loads_.torque[r].dot(spin_[r].cwiseQuotient(model_.factors.moments[r]));
+  for (const Model::Acting& each : model_.effects)
+    if (model_.is_on(each)) potential += each.effects->energy(before_);
+  return 1.5 * power / potential;
 }
 
 VariedNumbers VariedScene::start(const SceneSizes& sizes) {

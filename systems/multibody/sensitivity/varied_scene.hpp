@@ -66,6 +66,8 @@ struct SceneSizes {
   int n() const { return 3 * (linear + rotations); }
   int states() const { return 2 * n(); }
   int unknowns() const { return n() + int(rows.size()); }
+  /// Of what is seen at a node, the directions: the states and the time.
+  int directions() const { return states() + 1; }
 };
 
 /// A step that was solved.
@@ -77,6 +79,11 @@ struct SolvedStep {
   double end;  ///< the time there
   double h;
 };
+/// From node to node, which must outlive it.
+inline SolvedStep solved_step(const SceneState& before, const SceneState& after,
+                              const std::vector<Vec>& displacements) {
+  return {before, displacements, after.guess.turns, after.guess.multipliers[0], after.at.time, after.step};
+}
 
 class VariedScene {
  public:
@@ -86,18 +93,22 @@ class VariedScene {
   /// The equations of a step and its end, varied along the unknowns and the states from direction `first` on: unknowns
   /// first, then states. Past them, where `first` is beyond, by the numbers of this scene alone.
   void step(const SolvedStep& solved, const SceneSizes& sizes, int first);
-  /// The same with a tangent for each unknown and then each state.
+  /// The same with a tangent for each unknown and then each state, and perhaps for the time of its start and its size.
   void step(const SolvedStep& solved, const SceneSizes& sizes, std::span<const VariedTangent> tangents);
   const VariedNumbers& equations() const { return equations_; }
   const VariedNumbers& end() const { return end_; }
   /// The equations of rows that depend on others, which hold with those.
   const VariedNumbers& left_out() const { return left_out_; }
 
-  /// What is observed at a node, varied along the states from direction `first` on.
+  /// What is observed at a node, varied from direction `first` on along the states and, after them, the time there;
+  /// past it by the numbers of this scene alone.
   VariedNumbers observe(const SceneState& node, const SceneSizes& sizes, int first);
 
   /// The momenta of a node without what the joints do not allow (Multibody::make_tangent), varied in the same way.
   VariedNumbers tangent_momenta(const SceneState& node, const SceneSizes& sizes, int first);
+  /// The equations of the holonomic joints that act, at a node, and the rate of the time scale of controlled steps.
+  VariedNumbers held_places(const SceneState& node, const SceneSizes& sizes, int first);
+  VariedNumber time_scale_rate(const SceneState& node, const SceneSizes& sizes, int first);
 
   /// The start that the numbers of this scene make: displacement and momentum, of which the derivatives count.
   VariedNumbers start(const SceneSizes& sizes);
@@ -117,6 +128,8 @@ class VariedScene {
   std::span<const VariedTangent> unit_tangents(int count, int first);
   void place(const SceneState& node, const SceneSizes& sizes, std::span<const VariedTangent> tangents);
   void place_points(BasicConfiguration<V>& at) const;
+  /// A node's, its states and its time varied from direction `first` on.
+  void place(const SceneState& node, const SceneSizes& sizes, int first);
   void find_vakonomic_gradients(const BasicSceneArrow<V>& motion);
   /// Adds multipliers times gradients of the rows of which the role counts.
   template <class Counts>

@@ -1,20 +1,26 @@
 // The program that IPOPT is given has the derivatives of its values, by IPOPT's own test of first and second ones.
+#include "../../systems/controlled_bodies/scenes.hpp"
+
 #include <lagroid/solvers/control/control_search.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_program.hpp>
 #include <lagroid/systems/control/flows/dubins_car.hpp>
 #include <lagroid/systems/control/flows/satellite_turn.hpp>
+#include <lagroid/systems/multibody/control/ipopt/scene_chart.hpp>
 
 #include <IpIpoptApplication.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 
 namespace lagroid {
 namespace {
+
+using namespace controlled_bodies_tests;
 
 /// What IPOPT says of derivatives at a trajectory that is displaced at random, by 0.3 at most, from the chart's origin.
 std::string told_of_derivatives(TrajectoryChart& chart, ControlProgram::Blocks blocks) {
@@ -103,6 +109,32 @@ TEST(ProgramOfIpopt, HasTheDerivativesOfItsValues) {
   States::State end;
   end << 0.4, 1.9, 0.2, 0, 0, 0;
   expect_derivatives<SatelliteTurn>({satellite, States::arrow(States::State::Zero(), end, satellite.avoided), 5});
+}
+
+void expect_derivatives_of_scene(SceneControl task) {
+  task.duration_is_free = true;
+  task.duration_weight = 1;
+  task.stages = 3;
+  ControlledScene scene(task);
+  SceneChart chart(scene, scene_guess(scene, 3));
+  const std::string told = told_of_derivatives(chart, ControlProgram::Blocks::sparse);
+  EXPECT_NE(told.find(no_errors), std::string::npos) << told;
+}
+
+TEST(ProgramOfIpopt, HasTheDerivativesOfScenesOfBodies) {
+  for (const Retraction rotation : {Retraction::exponential, Retraction::cayley}) {
+    SceneControl satellite = control_of_scene(Satellite{rotation});
+    satellite.actuators = {{"torque1"}, {"torque2", -1, 2}, {"torque3", -1}};
+    satellite.cones = {{Satellite::of_body, {0, 0, 1}, {0.6, 0, 0.8}, 0.3, DirectionCone::Side::outside}};
+    satellite.speed_limits = {{.attitude = Satellite::of_body, .most = 0.8}};
+    satellite.end.turns = {{Satellite::of_body, {0.8, 0, 0.6, 0}}};
+    expect_derivatives_of_scene(satellite);
+  }
+  SceneControl arm = control_of_scene(DampedArm{});
+  arm.actuators = {{"shoulder"}, {"elbow", -HUGE_VAL, 1}};
+  arm.keep_outs = {{Arm::of_fore, KeepOut::Kind::disk, {0.9, 0.9, 0}, 0.3}};
+  arm.end.places = {{Arm::of_fore, 0, 0.3}, {Arm::of_fore, 1, 0.7}};
+  expect_derivatives_of_scene(arm);
 }
 
 /// Controls are free up to 0.2, so that near the start the cost has no derivatives at all.

@@ -59,10 +59,57 @@ TEST(ControlledBodies, WhatCannotBeControlledIsRefused) {
         task.end.velocities = {{0, 0, 1}};
       },
       "do not allow the velocities");
-  const Body bar{{1}, {}};
-  expect_refused(with([bar]<class S>(BasicScene<S>& scene) { scene.damp(bar, S(1), S(1)); }), "drag");
+  expect_refused(
+      [](auto& task) {
+        task.keep_outs = {{HingedBar::of_bar, KeepOut::Kind::sphere, {0.5, 0, 0}, 0.1}};
+      },
+      "keep-out 1 does not hold at the start");
+  expect_refused([](auto& task) { task.speed_limits = {{.linear = 0, .axes = {3}}}; }, "name axes of 0, 1 and 2");
+  expect_refused([](auto& task) { task.speed_limits = {{.linear = 0, .most = 0}}; }, "0 is not positive");
+  expect_refused([](auto& task) { task.speed_limits = {{.most = 1}}; }, "name a centre or an attitude");
+  expect_refused([](auto& task) { task.cones = {DirectionCone()}; }, "name the attitude of a body");
+  const auto damped_by_name = []<class S>(BasicScene<S>& scene) {
+    scene.begin_switch("brake");
+    scene.add(Damper<BasicLength<S>, S>{BasicLength<S>{{scene.ground(vec<S>(2, 1, 0)), HingedBar::of_bar}}, S(1)});
+    scene.end_switch();
+  };
+  expect_refused(
+      [&](auto& task) {
+        task.actuators = {{"brake", -1, 1}};
+        with(damped_by_name)(task);
+      },
+      "\"brake\" is a damper");
   expect_refused(with([]<class S>(BasicScene<S>& scene) { scene.add(BasicBlade<S>{{HingedBar::of_bar}}); }),
                  "joints on velocities");
+}
+
+TEST(ControlledBodies, ConesThatAreNoneAreRefused) {
+  SceneControl task = control_of_scene(Satellite{});
+  task.actuators = {{"torque1"}};
+  task.stages = 4;
+  const auto refused = [&](const DirectionCone& cone, const std::string& why) {
+    task.cones = {cone};
+    try {
+      const ControlledScene scene(task);
+      ADD_FAILURE() << "not refused: " << why;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  const DirectionCone good{Satellite::of_body, {0, 0, 1}, {1, 0, 0}, 1, DirectionCone::Side::outside};
+  task.cones = {good};
+  EXPECT_NO_THROW(ControlledScene{task});
+  DirectionCone bad = good;
+  bad.angle = 1.6;
+  refused(bad, "cone 1 does not hold at the start");
+  bad.angle = 3.2;
+  refused(bad, "3.2 is not between zero and pi");
+  bad = good;
+  bad.direction.setZero();
+  refused(bad, "the length one");
+  bad = good;
+  bad.side = DirectionCone::Side::inside;
+  refused(bad, "cone 1 does not hold at the start");
 }
 
 // Of an end, too, that nothing outside can bring about.

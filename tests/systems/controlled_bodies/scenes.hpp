@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace lagroid::controlled_bodies_tests {
@@ -76,6 +77,26 @@ struct Machine {
   static constexpr Attitude of_box{1};
 };
 
+/// The machine with drag on carriage and bob, a magnetic field, and dampers in the joint and from the ground to the
+/// bob.
+struct DampedMachine {
+  Retraction rotation = Retraction::exponential;
+  double damping = 0.7;
+
+  template <class S> BasicScene<S> operator()() const {
+    BasicScene<S> scene = Machine{rotation}.operator()<S>();
+    const Body carriage{{0}, {0}}, bob{Machine::of_bob, {}};
+    scene.damp(carriage, S(0.4), S(0.2));
+    scene.damp(bob, S(0.3), S(0));
+    scene.gyroscopic_force(bob, vec<S>(0.1, -0.2, 0.5));
+    BasicRelativeTurn<S> turn;
+    turn.attitudes = {carriage.attitude, Machine::of_box};
+    scene.add(Damper<BasicRelativeTurn<S>, S>{turn, S(damping)});
+    scene.add(Damper<BasicLength<S>, S>{BasicLength<S>{{scene.ground(vec<S>(2, 1, 0)), bob.centre}}, S(0.9)});
+    return scene;
+  }
+};
+
 /// A bar in the plane that hangs by a hinge at the origin along the first axis, and its motor: of inertia one about the
 /// hinge and weight one over its arm, the pendulum of mass, length and gravity one.
 struct HingedBar {
@@ -126,8 +147,41 @@ struct Arm {
   static constexpr std::array<int, 4> of_points{8, 9, 10, 11};  ///< elbow to hand
 };
 
-/// Two halves of a cat, straight along the third axis and joined by a ball joint, in which three motors act.
+/// The arm with drag on its upper link and a damper from the ground to its hand.
+struct DampedArm {
+  template <class S> BasicScene<S> operator()() const {
+    BasicScene<S> scene = Arm{}.operator()<S>();
+    scene.damp(Body{{1}, {}}, S(0.3), S(0.2));
+    const Site hand{Arm::of_points[3]};
+    scene.add(Damper<BasicLength<S>, S>{BasicLength<S>{{scene.ground(vec<S>(0, -1, 0)), hand}}, S(0.5)});
+    return scene;
+  }
+};
+
+/// A pivoted body, to be turned by torques about its principal axes.
+struct Satellite {
+  Retraction rotation = Retraction::exponential;
+
+  template <class S> BasicScene<S> operator()() const {
+    BasicScene<S> scene;
+    scene.rotation = rotation;
+    const auto zero = vec<S>(0, 0, 0);
+    const Body body = scene.pivoted_body(vec<S>(1, 2, 3), zero, quat<S>(1, 0, 0, 0), zero);
+    for (int i = 0; i < 3; ++i) {
+      scene.begin_switch("torque" + std::to_string(i + 1));
+      scene.add(BasicBodyTorque<S>{{}, {body.attitude}, Vector<S, 3>(Vector<S, 3>::Unit(i))});
+      scene.end_switch();
+    }
+    return scene;
+  }
+  static constexpr Attitude of_body{0};
+};
+
+/// Two halves of a cat, straight along the third axis and joined by a ball joint, in which three motors act; with drag
+/// on the halves.
 struct Cat {
+  double drag_of_front = 0, drag_of_rear = 0;
+
   template <class S> BasicScene<S> operator()() const {
     BasicScene<S> scene;
     const auto half = [&](double height) {
@@ -135,6 +189,8 @@ struct Cat {
                               vec<S>(0, 0, 0));
     };
     const Body front = half(0.3), rear = half(-0.3);
+    if (drag_of_front > 0) scene.damp(front, S(drag_of_front), S(0));
+    if (drag_of_rear > 0) scene.damp(rear, S(drag_of_rear), S(0));
     scene.add(
         BasicCoincidence<S>{{scene.point_of(front, vec<S>(0, 0, -0.3)), scene.point_of(rear, vec<S>(0, 0, 0.3))}});
     for (const auto& [name, axis] :

@@ -1,6 +1,6 @@
 // Costs and motions of controlled scenes of bodies: those of the same machines written in angles, and of the
 // differential equations; what nothing outside changes is kept on every grid.
-#include "scenes.hpp"
+#include "tasks.hpp"
 
 #include <lagroid/solvers/control/control_search.hpp>
 #include <lagroid/systems/control/actuated/two_link_arm.hpp>
@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -19,20 +18,6 @@ namespace {
 
 using namespace controlled_bodies_tests;
 using multibody::Vec;
-
-/// At rest at these places (x, y, angle) of planar bodies, each with its number.
-SceneEnd at_rest(const std::vector<std::pair<Site, Vec>>& places) {
-  SceneEnd out;
-  int body = 0;
-  for (const auto& [site, place] : places) {
-    for (int i = 0; i < 3; ++i) {
-      out.places.push_back({site, i, place(i)});
-      out.velocities.push_back({body, i, 0});
-    }
-    ++body;
-  }
-  return out;
-}
 
 /// From the start of this index alone, which is one that leads to the cheapest solution.
 SceneSolution solved(ControlledScene& scene, int index) { return solve_scene(scene, scene_guess(scene, index)); }
@@ -65,22 +50,6 @@ void expect_cost(SceneControl task, double reference) {
 TEST(ControlledBodies, SwingUpAtTheCostOfTheirEquation) {
   expect_cost(swing_up(HUGE_VAL), 1.1611196661425072);
   expect_cost(swing_up(0.5), 1.1639915199984323);
-}
-
-/// The arm from (a, b) = (0, 0.3) to (1.6, 0.3), at rest at both ends.
-SceneControl reach(double radius) {
-  SceneControl task = control_of_scene(Arm{});
-  task.actuators = {{"shoulder"}, {"elbow"}};
-  task.duration = 2;
-  const Vec elbow(std::cos(1.6), std::sin(1.6), 0);
-  const Vec along(std::cos(1.9), std::sin(1.9), 0);
-  Vec upper = 0.5 * elbow, fore = elbow + 0.5 * along;
-  upper(2) = 1.6;
-  fore(2) = 1.9;
-  task.end = at_rest({{Arm::of_upper, upper}, {Arm::of_fore, fore}});
-  if (radius > 0)
-    for (const int site : Arm::of_points) task.keep_outs.push_back({{site}, KeepOut::Kind::disk, {1, 1, 0}, radius});
-  return task;
 }
 
 double cost_in_angles(double radius, long stages) {
@@ -134,17 +103,7 @@ Vec angular_momentum(const ControlledScene& scene, const ControlledNode& node) {
 }
 
 TEST(ControlledBodies, ACatTurnsWithoutAngularMomentum) {
-  SceneControl task = control_of_scene(Cat{});
-  task.actuators = {{"pitch"}, {"roll"}, {"twist"}};
-  const double angle = 0.8;
-  const Quaternion turned(std::cos(angle / 2), 0, 0, std::sin(angle / 2));
-  task.end.turns = {{Cat::of_front, turned}, {Cat::of_rear, turned}};
-  // At rest, both of them: more than the motion leaves free.
-  for (int body = 0; body < 2; ++body)
-    for (int i = 0; i < 3; ++i) {
-      task.end.turnings.push_back({{body}, i, 0});
-      task.end.velocities.push_back({body, i, 0});
-    }
+  SceneControl task = turning_cat(0.8);
   std::vector<double> costs;
   for (const long stages : {10L, 20L, 40L}) {
     task.stages = stages;

@@ -1,4 +1,4 @@
-#include <lagroid/systems/multibody/control/node_forces.hpp>
+#include <lagroid/systems/multibody/control/nodes/node_forces.hpp>
 
 #include <algorithm>
 #include <utility>

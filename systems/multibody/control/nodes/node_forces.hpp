@@ -27,11 +27,10 @@ template <class S> class NodeForces {
   int rotations() const { return int(model_.factors.moments.size()); }
   int size() const { return 3 * (linear() + rotations()); }
 
-  Vec3& place(int linear) { return at_.x[std::size_t(linear)]; }
-  Mat3& attitude(int rotation) { return at_.attitude[std::size_t(rotation)]; }
+  /// Whose places of linear factors, the first ones, and attitudes are to be set.
+  BasicConfiguration<S>& configuration() { return at_; }
   const Vec3& place(int linear) const { return at_.x[std::size_t(linear)]; }
   const Mat3& attitude(int rotation) const { return at_.attitude[std::size_t(rotation)]; }
-  /// To be called after places and attitudes have been set.
   void evaluate();
 
   const S& own(int i) const { return own_[std::size_t(i)]; }

@@ -6,7 +6,7 @@
 /// W the inverse inertia. The momenta of a node are those before the joints' reaction; nu takes from them what the
 /// joints do not allow. A detail of ControlledScene, over any scalar. Nothing throws.
 
-#include <lagroid/systems/multibody/control/node_forces.hpp>
+#include <lagroid/systems/multibody/control/nodes/node_forces.hpp>
 #include <lagroid/systems/multibody/control/scene_control.hpp>
 
 #include <Eigen/Core>
@@ -16,21 +16,26 @@
 
 namespace lagroid::multibody {
 
-/// What the motion keeps by itself, whatever the controls: a momentum <a + b x, mu> along a translation a with a turn b
-/// about the origin, or where the centre of mass is along a.
+/// What the motion keeps by itself, whatever the controls, along a translation a, or one with a turn b about the
+/// origin.
 struct HeldByMotion {
+  enum class Kind {
+    momentum,           ///< <a + b x, mu>
+    momentum_and_drag,  ///< <a, mu + c x>, c the drag
+    centre              ///< <a, m x>: where the centre of mass is
+  };
   Vec translation = Vec::Zero();
   Vec turn = Vec::Zero();
-  bool is_centre = false;
+  Kind kind = Kind::momentum;
   double value = 0;
 };
 
 class EndConditions {
  public:
   EndConditions() = default;
-  /// Of so many rows of joints; `weights` are one over inertia and moments, in the order of the factors, of which some
-  /// are planar.
-  EndConditions(SceneEnd end, int joints, std::vector<double> weights, std::vector<char> planar);
+  /// Of so many rows of joints; `weights` are one over inertia and moments, and `drag` is that on them, in the order of
+  /// the factors, of which some are planar.
+  EndConditions(SceneEnd end, int joints, std::vector<double> weights, std::vector<Mat> drag, std::vector<char> planar);
   /// From now on values have these behind the others, less their own.
   void hold(std::vector<HeldByMotion> held) { held_ = std::move(held); }
 
@@ -50,6 +55,7 @@ class EndConditions {
   SceneEnd end_;
   int joints_ = 0;
   std::vector<double> weights_;
+  std::vector<Mat> drag_;
   std::vector<char> planar_;
   std::vector<HeldByMotion> held_;
   Eigen::MatrixXd matrix_, inverse_;  // D W D^T

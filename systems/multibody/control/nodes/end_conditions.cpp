@@ -1,4 +1,4 @@
-#include <lagroid/systems/multibody/control/end_conditions.hpp>
+#include <lagroid/systems/multibody/control/nodes/end_conditions.hpp>
 
 #include <Eigen/LU>
 
@@ -6,10 +6,12 @@
 
 namespace lagroid::multibody {
 
-EndConditions::EndConditions(SceneEnd end, int joints, std::vector<double> weights, std::vector<char> planar)
+EndConditions::EndConditions(SceneEnd end, int joints, std::vector<double> weights, std::vector<Mat> drag,
+                             std::vector<char> planar)
     : end_(std::move(end)),
       joints_(joints),
       weights_(std::move(weights)),
+      drag_(std::move(drag)),
       planar_(std::move(planar)),
       matrix_(joints, joints) {}
 
@@ -21,9 +23,16 @@ S EndConditions::value(const HeldByMotion& held, const NodeForces<S>& node, cons
   for (int f = 0; f < node.linear(); ++f) {
     const Vector<S, 3>& x = node.place(f);
     const S* p = momenta.data() + 3 * f;
-    if (held.is_centre) {
-      for (int i = 0; i < (planar_[std::size_t(f)] ? 2 : 3); ++i)
-        sum += x(i) * (a(i) / weights_[std::size_t(3 * f + i)]);
+    if (held.kind != HeldByMotion::Kind::momentum) {
+      const Mat& drag = drag_[std::size_t(f)];
+      for (int i = 0; i < (planar_[std::size_t(f)] ? 2 : 3); ++i) {
+        if (held.kind == HeldByMotion::Kind::centre) {
+          sum += x(i) * (a(i) / weights_[std::size_t(3 * f + i)]);
+          continue;
+        }
+        sum += p[i] * a(i);
+        for (int j = 0; j < 3; ++j) sum += x(j) * (a(i) * drag(i, j));
+      }
     } else if (planar_[std::size_t(f)]) {
       sum += p[0] * (a(0) - x(1) * b(2)) + p[1] * (a(1) + x(0) * b(2)) + p[2] * b(2);
     } else {
@@ -31,7 +40,7 @@ S EndConditions::value(const HeldByMotion& held, const NodeForces<S>& node, cons
              p[2] * (a(2) + x(1) * b(0) - x(0) * b(1));
     }
   }
-  if (held.is_centre) return sum;
+  if (held.kind != HeldByMotion::Kind::momentum) return sum;
   for (int r = 0; r < node.rotations(); ++r) {
     const Matrix<S, 3, 3>& attitude = node.attitude(r);
     for (int i = 0; i < 3; ++i)
@@ -99,5 +108,7 @@ template void EndConditions::values(const NodeForces<double>&, const std::vector
 template void EndConditions::values(const NodeForces<SecondNumber>&, const std::vector<SecondNumber>&,
                                     std::vector<SecondNumber>&);
 template void EndConditions::velocities(const NodeForces<double>&, const std::vector<double>&, std::vector<double>&);
+template void EndConditions::velocities(const NodeForces<SecondNumber>&, const std::vector<SecondNumber>&,
+                                        std::vector<SecondNumber>&);
 
 }  // namespace lagroid::multibody

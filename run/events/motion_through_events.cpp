@@ -1,0 +1,217 @@
+#include <lagroid/run/events/motion_through_events.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+namespace lagroid {
+
+namespace {
+
+/// Of a step: what is nearer cannot be told apart, and what is nearer has no derivative of its own.
+constexpr double indistinguishable = 1e-11, together = 1e-9;
+constexpr int most_changes = 100;
+
+/// Numbers with names, as plain ones.
+struct Unnamed {
+  NumberArchive& archive;
+  template <class T> void operator()(const char*, T& field) const {
+    if constexpr (requires { field.serialize(*this); }) {
+      field.serialize(*this);
+    } else {
+      archive(field);
+    }
+  }
+};
+
+}  // namespace
+
+MotionThroughEvents::MotionThroughEvents(std::unique_ptr<CuttableMotion> motion, std::vector<ObservedEvent> events)
+    : motion_(std::move(motion)),
+      events_(std::move(events)),
+      happened_(events_.size(), 0),
+      stays_at_start_(events_.size(), 0) {
+  for (const ObservedEvent& event : events_) {
+    if (!event.function) throw std::invalid_argument(fmt::format("event \"{}\": it has no function", event.name));
+    watches_.emplace_back(Event{.name = event.name, .direction = event.direction, .tolerance = event.tolerance});
+  }
+  const std::vector<double> now = values();
+  for (std::size_t i = 0; i < events_.size(); ++i) watches_[i].next(now[i], time());
+}
+
+double MotionThroughEvents::value_of(std::size_t event, const Eigen::VectorXd& seen) const {
+  VariedVector all(seen.size() + 1);
+  all(0) = time();
+  for (Eigen::Index i = 0; i < seen.size(); ++i) all(i + 1) = seen(i);
+  return events_[event].function(all).value;
+}
+
+std::vector<double> MotionThroughEvents::values() const {
+  const Eigen::VectorXd seen = motion_->seen();
+  std::vector<double> out;
+  for (std::size_t i = 0; i < events_.size(); ++i) out.push_back(value_of(i, seen));
+  return out;
+}
+
+std::string MotionThroughEvents::named(const Piece& piece) const {
+  return fmt::format("event \"{}\"", events_[piece.events.front()].name);
+}
+
+StepReport MotionThroughEvents::advance() try {
+  if (is_over_) throw std::invalid_argument("the run is ended by an event: no step follows it");
+  pieces_.clear();
+  reason_.clear();
+  chain_.reset();
+  begun_ = motion_->save();
+  begun_at_ = time();
+  motion_->keep();
+  const StepReport report = motion_->advance();
+  if (!report.converged()) return report;
+  size_ = rest_ = time() - begun_at_;
+  ++steps_;
+  std::vector<std::size_t> suspects;
+  const std::vector<double> now = values();
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    if (watches_[i].next(now[i], time())) suspects.push_back(i);
+    if (steps_ == 1 && stays_at_start_[i] == 0 && watches_[i].starts_there() && events_[i].decides() &&
+        is_in_direction(events_[i].direction, -now[i], now[i]))
+      conflict_ =
+          fmt::format("the function of event \"{}\" is zero at the start, and what follows has no derivative there",
+                      events_[i].name);
+  }
+  for (int changes = 0; !suspects.empty() && !is_over_; ++changes) {
+    if (changes == most_changes) {
+      reason_ = "events follow their own changes without end: they want a direction";
+      return {SolveStatus::not_converged};
+    }
+    const double end = begun_at_ + size_;
+    const std::size_t before = pieces_.size();
+    const std::vector<Found> found = find(suspects, rest_);
+    motion_->leave_step();
+    suspects.clear();
+    take(found, rest_);
+    if (pieces_.size() == before || !(pieces_.back().changes || pieces_.back().ends)) break;
+    // From there on it is another motion.
+    const Piece& last = pieces_.back();
+    if (const StepReport part = motion_->go(last.duration); !part.converged()) return part;
+    if (last.changes) {
+      motion_->kick(kick_of(last));
+      if (const Switching what = switching_of(last); !what.empty()) motion_->switch_to(what, /*linearised=*/false);
+    }
+    if (last.ends) {
+      is_over_ = true;
+      break;
+    }
+    motion_->keep();
+    const std::vector<double> there = values();
+    rest_ = std::max(0.0, end - time());
+    if (const StepReport part = motion_->go(rest_); !part.converged()) return part;
+    motion_->end_step();
+    const std::vector<double> after = values();
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      std::optional<Passing> passing;
+      for (const Found& each : found)
+        if (each.event == i && std::find(last.events.begin(), last.events.end(), i) != last.events.end())
+          passing = passing ? passing : each.passing;
+      if (watches_[i].next_from(there[i], passing, after[i], time())) suspects.push_back(i);
+    }
+  }
+  return report;
+} catch (const StepReport& failed) {
+  return failed;
+} catch (const NoNumber&) {
+  reason_ = "the function of an event is no finite number";
+  return {SolveStatus::left_domain};
+} catch (const std::domain_error& error) {
+  reason_ = error.what();
+  return {SolveStatus::left_domain};
+}
+
+std::vector<MotionThroughEvents::Found> MotionThroughEvents::find(const std::vector<std::size_t>& suspects,
+                                                                  double length) {
+  std::vector<Found> out;
+  for (const std::size_t i : suspects)
+    for (const FoundInStep& each : watches_[i].find([&](double share) {
+           if (const StepReport part = motion_->go(share * length); !part.converged()) throw part;
+           return value_of(i, motion_->seen());
+         }))
+      out.push_back({i, each.share, each.passing});
+  std::stable_sort(out.begin(), out.end(), [](const Found& a, const Found& b) { return a.share < b.share; });
+  return out;
+}
+
+std::string MotionThroughEvents::conflict_of(const std::vector<Found>& found, std::size_t first,
+                                             std::size_t last) const {
+  const auto differ = [&](std::size_t a, std::size_t b) {
+    const ObservedEvent &one = events_[found[a].event], &other = events_[found[b].event];
+    return (one.decides() || other.decides()) && (one.when != other.when || one.when.empty());
+  };
+  for (std::size_t k = first; k < found.size() && found[k].share - found[first].share <= together; ++k)
+    for (std::size_t j = first; j < std::min(k, last); ++j)
+      if (differ(j, k))
+        return fmt::format("event \"{}\" and event \"{}\" happen together, where what follows has no derivative",
+                           events_[found[j].event].name, events_[found[k].event].name);
+  return "";
+}
+
+void MotionThroughEvents::take(const std::vector<Found>& found, double length) {
+  for (std::size_t first = 0; first < found.size();) {
+    std::size_t last = first;
+    Piece piece{};
+    while (last < found.size() && found[last].share <= found[first].share + indistinguishable) {
+      const Found& each = found[last++];
+      const ObservedEvent& event = events_[each.event];
+      piece.duration = each.share * length;
+      if (each.passing == Passing::touching) {  // which changes nothing
+        pieces_.push_back({.duration = piece.duration, .events = {each.event}, .touches = true});
+        continue;
+      }
+      piece.events.push_back(each.event);
+      piece.changes = piece.changes || event.changes_motion();
+      ++happened_[each.event];
+      piece.ends = piece.ends || (event.then == Event::Then::stop && happened_[each.event] >= event.count);
+    }
+    piece.conflict = conflict_of(found, first, last);
+    first = last;
+    if (piece.events.empty()) continue;
+    pieces_.push_back(std::move(piece));
+    if (pieces_.back().changes || pieces_.back().ends) return;
+  }
+}
+
+Eigen::VectorXd MotionThroughEvents::kick_of(const Piece& piece) const {
+  const Eigen::VectorXd seen = motion_->seen();
+  VariedVector all(seen.size() + 1);
+  all(0) = time();
+  for (Eigen::Index i = 0; i < seen.size(); ++i) all(i + 1) = seen(i);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(states() / 2);
+  for (const std::size_t i : piece.events) {
+    if (!events_[i].kick) continue;
+    const VariedVector by = events_[i].kick(all);
+    if (by.size() != out.size())
+      throw std::invalid_argument(fmt::format("event \"{}\": its kick has {} numbers, the momentum has {}",
+                                              events_[i].name, by.size(), out.size()));
+    for (Eigen::Index k = 0; k < out.size(); ++k) out(k) += by(k).value;
+  }
+  return out;
+}
+
+Switching MotionThroughEvents::switching_of(const Piece& piece) const {
+  Switching out;
+  for (const std::size_t i : piece.events)
+    out.insert(out.end(), events_[i].switches.begin(), events_[i].switches.end());
+  return out;
+}
+
+void MotionThroughEvents::serialize(NumberArchive& archive) {
+  motion_->serialize(archive);
+  const Unnamed unnamed{archive};
+  for (FunctionWatch& watch : watches_) watch.serialize(unnamed);
+  archive(happened_, steps_, is_over_);
+}
+
+}  // namespace lagroid

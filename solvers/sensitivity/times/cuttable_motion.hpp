@@ -1,0 +1,61 @@
+#pragma once
+/// A motion whose steps can be made in part and which can be changed in between, linearised by the durations of the
+/// parts too: what derivatives go through events of (run/events/motion_through_events.hpp), whatever its system.
+///
+///     motion.keep();                           // at a node
+///     if (motion.advance().converged() && motion.go(0.3 * h).converged()) {  // where something happens
+///       const Derivatives part = motion.part();
+///       motion.kick(by);
+///       motion.keep();                         // what follows begins here
+///       motion.go(0.7 * h);
+///       motion.end_step();                     // usual steps again
+///     }
+///
+/// Directions of a part are states, parameters, the time t at which it begins, and its duration s; a part leaves the
+/// last three as they are.
+///
+/// Requires that `part` follows a `go` that converged. Errors: WithoutDerivative, one line, for a change that has none;
+/// std::domain_error for one that is not possible where the motion is, std::invalid_argument for what has no such name.
+
+#include <lagroid/solvers/sensitivity/linearised_motion.hpp>
+#include <lagroid/solvers/sensitivity/times/derivative_chain.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid {
+
+/// What is switched on, true, or off, by its name.
+using Switching = std::vector<std::pair<std::string, bool>>;
+
+class CuttableMotion : public LinearisedMotion {
+ public:
+  /// Parts begin here.
+  virtual void keep() = 0;
+  /// From where they begin, by a part of a step; of no duration, back to there.
+  virtual StepReport go(double duration) = 0;
+  /// The derivative of that part; none where it is not finite or singular.
+  virtual Derivatives part() = 0;
+  /// Here is the end of the step that `advance` made last.
+  virtual void end_step() = 0;
+  /// Back to the end that this step had.
+  virtual void leave_step() = 0;
+
+  /// What is observed here, alone, and with its derivatives by states, parameters and the time.
+  virtual Eigen::VectorXd seen() const = 0;
+  virtual NodeValues observe_in_part() const = 0;
+
+  /// Adds to the momentum, the second half of the states.
+  virtual void kick(const Eigen::VectorXd& by) = 0;
+  /// What a switch is to derivatives: of what it does to the momentum, and, by states, parameters and the time, of what
+  /// was held until then and of what is held from then on. There are derivatives where the one makes the other vanish.
+  struct Switched {
+    Derivatives momentum = {};
+    Eigen::MatrixXd held = {}, holds = {};
+  };
+  /// Switches; returns all that where it is asked for.
+  virtual Switched switch_to(const Switching& what, bool linearised) = 0;
+};
+
+}  // namespace lagroid
