@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace lagroid::app {
@@ -158,7 +159,8 @@ class Reader {
       keep_out.centre = vector(table, centre_key);
       keep_out.radius = read_key(table, radius_key);
     }
-    if (keep_out.value(point.place) > 0) table.fail("", fmt::format("\"{}\" is inside at the start", body.name));
+    if (keep_out.value(point.place) > multibody::limit_rounding)
+      table.fail("", fmt::format("\"{}\" is inside at the start", body.name));
     out_.task.keep_outs.push_back(keep_out);
   }
 
@@ -178,9 +180,10 @@ class Reader {
       if (!table.has(key.name)) return;
       cone.angle = angle;
       cone.side = side;
-      if (cone.value(body.attitude) > 0)
+      const Vec seen = body.attitude * cone.direction;
+      if (cone.value(body.attitude) > multibody::limit_rounding)
         table.fail(key.name, fmt::format("\"{}\" has its direction {:.4g} rad from the axis at the start", body.name,
-                                         std::acos((body.attitude * cone.direction).dot(cone.axis))));
+                                         std::atan2(seen.cross(cone.axis).norm(), seen.dot(cone.axis))));
       out_.task.cones.push_back(cone);
     };
     add(at_least_key, at_least, DirectionCone::Side::outside);
@@ -195,7 +198,7 @@ class Reader {
       SpeedLimit& limit = out_.task.speed_limits.emplace_back();
       limit.linear = body.linear;
       if (body.planar) limit.axes = {0, 1};
-      limit.most = read_key_or(table, speed_key, 0);
+      limit.most = largest(table, speed_key, body, body.velocity.norm(), "m/s");
     }
     if (!table.has(angular_speed_key.name)) return;
     const bool turns = body.planar || body.body.attitude.index >= 0;
@@ -207,14 +210,22 @@ class Reader {
     } else {
       limit.attitude = body.body.attitude;
     }
-    limit.most = read_key_or(table, angular_speed_key, 0);
+    limit.most = largest(table, angular_speed_key, body, body.angular_velocity.norm(), "rad/s");
   }
 
+  /// A largest speed, which the start keeps to.
+  static double largest(const Section& table, const KeyOf<Number>& key, const NamedBody& body, double at_start,
+                        std::string_view unit) {
+    const double most = read_key_or(table, key, 0);
+    if (at_start > most * (1 + multibody::limit_rounding))
+      table.fail(key.name, fmt::format("\"{}\" has {:.4g} {} at the start", body.name, at_start, unit));
+    return most;
+  }
   static Vec vector(const Section& table, const KeyOf<NumberArray>& key) { return Vec(read_key(table, key).data()); }
   static Vec unit(const Section& table, const KeyOf<NumberArray>& key) {
     const Vec v = vector(table, key);
-    if (!(v.norm() > 0)) table.fail(key.name, "must not vanish");
-    return v.normalized();
+    if (!(v.stableNorm() > 0)) table.fail(key.name, "must not vanish");
+    return v.stableNormalized();
   }
   static std::vector<double> numbers(const Section& table, const KeyOf<NumberList>& key, std::size_t count) {
     const std::vector<double> out = read_key_or(table, key, {});

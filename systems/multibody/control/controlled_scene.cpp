@@ -91,12 +91,11 @@ void ControlledScene::require_task() const {
 }
 
 void ControlledScene::require_limits() {
-  constexpr double rounding = 1e-12;
   const std::vector<double> speeds = velocities(start_);
   for (int i = 0; i < limits_.size(); ++i) {
     const int of_speed = i - limits_.on_places();
     const double value = of_speed < 0 ? limits_.value(i, *plain_) : limits_.value_of_speed(of_speed, speeds);
-    if (!(value <= rounding))
+    if (!(value <= limit_rounding))
       throw std::invalid_argument(
           fmt::format("{} does not hold at the start: begin where it does, or leave it out", limits_.name(i)));
   }

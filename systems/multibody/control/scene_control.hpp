@@ -40,6 +40,9 @@ struct Actuator {
   double weight = 1;  ///< w of the cost w u^2
 };
 
+/// By how much a start may be beyond what its limits allow.
+inline constexpr double limit_rounding = 1e-12;
+
 /// What a point of a body keeps out of at every node: value(x) <= 0 where x is outside.
 struct KeepOut {
   enum class Kind {

@@ -1,16 +1,14 @@
 // Where a controlled scene may end, and which of the conditions on that say something.
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/systems/multibody/control/controlled_scene.hpp>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
 #include <stdexcept>
-#include <type_traits>
 
 namespace lagroid::multibody {
 
@@ -40,8 +38,7 @@ double ControlledScene::approach_end(int conditions, int numbers) {
     const Eigen::Map<const Eigen::VectorXd> left(values.data(), conditions);
     const double off = left.lpNorm<Eigen::Infinity>();
     if (off < 1e-13 || k == most || !std::isfinite(off)) return off;
-    by.head(numbers) =
-        -end_jacobian(end_).topLeftCorner(conditions, numbers).completeOrthogonalDecomposition().solve(left);
+    by.head(numbers) = -least_squares(end_jacobian(end_).topLeftCorner(conditions, numbers), left);
     displace(end_, by.data(), std::min(1.0, 1 / by.head(n()).norm()), end_);
   }
 }
@@ -106,26 +103,31 @@ std::vector<HeldByMotion> ControlledScene::held_by_motion() {
     each.value = conditions_.value(each, at, momenta_);
     out.push_back(each);
   };
-  const auto kernel = [&](const auto& square, const auto& take) {
-    const Eigen::SelfAdjointEigenSolver<std::decay_t<decltype(square)>> solver(square);
-    for (int i = 0; i < int(square.cols()); ++i)
-      if (solver.eigenvalues()(i) <= vanishes) take(solver.eigenvectors().col(i));
+  const auto kernel = [&](const Eigen::MatrixXd& square) -> Eigen::MatrixXd {
+    const SymmetricEigenvectors found = symmetric_eigenvectors(square);  // values increase
+    return found.vectors.leftCols((found.values.array() <= vanishes).count());
   };
-  kernel(Square(work + of_drag), [&](const auto& v) { hold({Vec(v.template head<3>()), Vec(v.template tail<3>())}); });
+  const Eigen::MatrixXd symmetries = kernel(work + of_drag);
+  for (const auto& v : symmetries.colwise()) hold({Vec(v.head<3>()), Vec(v.tail<3>())});
   if (linear() == 0) return out;
-  kernel(Mat(work.topLeftCorner<3, 3>()), [&](const auto& v) {
-    const Vec along = v;
+  // Translations along the axes of the drag, those on which it does nothing among them.
+  const Eigen::MatrixXd free = kernel(work.topLeftCorner<3, 3>());
+  if (free.cols() == 0) return out;
+  const Eigen::MatrixXd axes =
+      free * symmetric_eigenvectors(free.transpose() * of_drag.topLeftCorner<3, 3>() * free).vectors;
+  for (int axis = 0; axis < int(axes.cols()); ++axis) {
+    const Vec along = axes.col(axis);
     if (along.dot(of_drag.topLeftCorner<3, 3>() * along) > vanishes)
       hold({along, Vec::Zero(), HeldByMotion::Kind::momentum_and_drag});
     const double momentum = conditions_.value({along, Vec::Zero()}, at, momenta_);
-    if (task_.duration_is_free && std::abs(momentum) > 1e-12) return;
+    if (task_.duration_is_free && std::abs(momentum) > 1e-12) continue;
     const std::optional<double> gamma = drag_by_mass(along);
-    if (!gamma) return;
+    if (!gamma) continue;
     hold({along, Vec::Zero(), HeldByMotion::Kind::centre});
     const double slowed = *gamma * task_.duration / double(task_.stages) / 2;
     const double left = std::pow((1 - slowed) / (1 + slowed), double(task_.stages));
     out.back().value += momentum * (*gamma == 0 ? task_.duration : (1 - left) / *gamma);
-  });
+  }
   return out;
 }
 

@@ -20,7 +20,7 @@ SceneControl free_bodies() {
                     {FreeBodies::of_bob, KeepOut::Kind::plane, {0, 0, -1}, 1, {0.6, 0, 0.8}},
                     {FreeBodies::of_corner, KeepOut::Kind::disk, {-0.5, 0.5, 0}, 0.3}};
   task.cones = {{FreeBodies::of_box, {0, 0.6, 0.8}, {1, 0, 0}, 0.9, DirectionCone::Side::outside},
-                {FreeBodies::of_box, {0, 0, 1}, {0, 0, 1}, 1.1, DirectionCone::Side::inside}};
+                {FreeBodies::of_box, {0, 0, 1}, {0, 0, 1}, 1.4, DirectionCone::Side::inside}};
   task.speed_limits = {{.linear = 1, .most = 1.2}, {.attitude = FreeBodies::of_box, .axes = {0, 2}, .most = 0.8}};
   task.end.places = {{FreeBodies::of_corner, 0, 0.5}, {FreeBodies::of_bob, 2, 0.1}};
   task.end.turns = {{FreeBodies::of_box, Quaternion(0.8, 0.6, 0, 0)}};

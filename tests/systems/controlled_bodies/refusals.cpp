@@ -125,5 +125,47 @@ TEST(ControlledBodies, AnotherMomentumThanTheMotionKeepsIsRefused) {
   EXPECT_THROW(ControlledScene{task}, std::invalid_argument);
 }
 
+/// A mass in a magnetic field along no axis, pushed across it.
+struct MassInField {
+  template <class S> BasicScene<S> operator()() const {
+    BasicScene<S> scene;
+    const Body mass = scene.point_mass(S(1), vec<S>(0, 0, 0), vec<S>(0, 0, 0));
+    scene.gyroscopic_force(mass, vec<S>(1, 1, 1));
+    scene.begin_switch("push");
+    scene.add(BasicConstantForce<S>{{mass.centre}, vec<S>(1, -1, 0)});
+    scene.end_switch();
+    return scene;
+  }
+};
+TEST(ControlledBodies, AlongAMagneticFieldTheCentreOfMassIsHeld) {
+  SceneControl task = control_of_scene(MassInField{});
+  task.actuators = {{"push"}};
+  const auto ends_at = [&](double x) {
+    task.end.places.clear();
+    for (int axis = 0; axis < 3; ++axis) task.end.places.push_back({{0}, axis, x});
+  };
+  ends_at(0);
+  EXPECT_NO_THROW(ControlledScene{task});
+  ends_at(0.5);
+  EXPECT_THROW(ControlledScene{task}, std::invalid_argument);
+}
+
+TEST(ControlledBodies, EndsBeyondTheirLimitsAreRefused) {
+  SceneControl task = control_of_scene(Cat{});
+  task.actuators = {{"pitch"}, {"roll"}, {"twist"}};
+  task.speed_limits = {{.attitude = Attitude{0}, .most = 2}};
+  task.end.turnings = {{Attitude{0}, 0, 1.5}};
+  EXPECT_NO_THROW(ControlledScene{task});
+  task.end.turnings.push_back({Attitude{0}, 1, 1.5});
+  EXPECT_THROW(ControlledScene{task}, std::invalid_argument);
+  task.end.turnings.clear();
+  task.end.turns = {{Attitude{0}, {0, 1, 0, 0}}};
+  task.cones = {{.attitude = Attitude{0}, .angle = 0.5, .side = DirectionCone::Side::inside}};
+  EXPECT_THROW(ControlledScene{task}, std::invalid_argument);
+  task.cones.front().side = DirectionCone::Side::outside;
+  task.cones.front().axis = Vec::UnitX();
+  EXPECT_NO_THROW(ControlledScene{task});
+}
+
 }  // namespace
 }  // namespace lagroid
