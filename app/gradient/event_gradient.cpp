@@ -1,6 +1,7 @@
 #include "event_gradient.hpp"
 
 #include <lagroid/run/events/event_watch.hpp>
+#include <lagroid/run/files/output_folder.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -189,7 +190,11 @@ EventExpressions::EventExpressions(const Event& event, const std::vector<Gradien
   for (const std::string& text : event.kick) kick.push_back(smooth(text, event.name, names_in(observed)));
 }
 
-void require_events(const std::vector<Event>& events, Motion& motion) { const EventWatch watch(events, motion); }
+void require_events(const std::vector<Event>& events, Motion& motion) try {
+  const EventWatch watch(events, motion);
+} catch (const RunError& error) {
+  throw std::invalid_argument(error.what());
+}
 
 std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject, const GradientTable& table,
                                                      const std::vector<Nudge>& nudges) {

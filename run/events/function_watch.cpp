@@ -56,11 +56,17 @@ bool FunctionWatch::next_from(double changed, std::optional<Passing> passing, do
   before_ = changed;
   // What has just happened does not happen again there: its function has passed zero, or turned.
   constexpr double at_zero = 1e-9;
-  if (passing == Passing::minimum || passing == Passing::maximum)
+  const bool turned = passing == Passing::minimum || passing == Passing::maximum;
+  const bool passed = passing && !turned && std::abs(before_) <= at_zero * largest_;
+  if (turned)
     slope_before_ = passing == Passing::minimum ? tiny : -tiny;
-  else if (passing && std::abs(before_) <= at_zero * largest_)
+  else if (passed)
     before_ = passing == Passing::touching ? std::copysign(tiny, value) : passing == Passing::falling ? -tiny : tiny;
   see(value, time);
+  if (passed && std::abs(now_) <= round_off * largest_) {
+    is_at_zero_ = true;  // it passed at the node: the step from there does not begin on the other side
+    return false;
+  }
   // Nothing is known of how it bends: it is looked at.
   return !std::isnan(now_) && !std::isnan(before_);
 }

@@ -107,6 +107,7 @@ class MotionThroughEvents final : public LinearisedMotion {
   void take(const std::vector<Found>& found, double length);
   std::string conflict_of(const std::vector<Found>& found, std::size_t first, std::size_t last) const;
   std::string named(const Piece& piece) const;
+  bool grazes(const Piece& piece) const;
   Eigen::VectorXd kick_of(const Piece& piece) const;
   Switching switching_of(const Piece& piece) const;
 

@@ -19,6 +19,12 @@ constexpr double grazing = 1e-8;
 /// Of a step: the derivative of a shorter part is that of differences over its duration.
 constexpr double shortest = 5e-7;
 
+std::string at_node(const std::string& event, double time) {
+  return fmt::format(
+      "{} happens at the time of a node, where what follows has no derivative: t = {:.6g}; take another step", event,
+      time);
+}
+
 /// One row as a combination of all.
 std::shared_ptr<const StepDerivative> replaced(Eigen::Index row, const Eigen::RowVectorXd& by) {
   return std::make_shared<ReplacedRows>(int(row), by);
@@ -74,6 +80,7 @@ void MotionThroughEvents::see_start(const Eigen::MatrixXd& directions) {
 }
 
 bool MotionThroughEvents::lead_to(const Piece& piece, Derivatives& to) {
+  if (piece.duration == 0) throw EventWithoutDerivative(at_node(named(piece), begun_at_));
   if (!motion_->go(piece.duration).converged()) return false;
   const Derivatives part = motion_->part();
   if (part.empty()) return false;
@@ -97,10 +104,7 @@ bool MotionThroughEvents::lead_to(const Piece& piece, Derivatives& to) {
   by /= -rate;
   by(duration_row()) = 0;
   moves_ = !by.head(time_row()).isZero(0);
-  if (moves_ && piece.duration < shortest * size_)
-    throw EventWithoutDerivative(fmt::format(
-        "{} happens at the time of a node, where what follows has no derivative: t = {:.6g}; take another step",
-        named(piece), time()));
+  if (moves_ && piece.duration < shortest * size_) throw EventWithoutDerivative(at_node(named(piece), time()));
   to.push_back(replaced(duration_row(), by));
   to.insert(to.end(), part.begin(), part.end());
   Eigen::RowVectorXd later = Eigen::RowVectorXd::Zero(time_row() + 2);
@@ -144,13 +148,8 @@ void MotionThroughEvents::follow_switch(const Piece& piece, const Switching& wha
 }
 
 bool MotionThroughEvents::follow_rest(const std::string& after, bool moves, Derivatives& step) {
-  if (rest_ < shortest * size_) {
-    if (moves)
-      throw EventWithoutDerivative(fmt::format(
-          "{} happens at the time of a node, where what follows has no derivative: t = {:.6g}; take another step",
-          after, begun_at_ + size_));
-    return true;
-  }
+  if (moves && rest_ < shortest * size_) throw EventWithoutDerivative(at_node(after, begun_at_ + size_));
+  if (rest_ == 0) return true;
   motion_->keep();
   if (!motion_->go(rest_).converged()) return false;
   const Derivatives part = motion_->part();
@@ -172,7 +171,7 @@ bool MotionThroughEvents::follow(Derivatives& step, const AtPiece* tell) {
   const Piece* last = nullptr;
   for (std::size_t k = 0; k < pieces_.size() && regular; ++k) {
     const Piece& piece = pieces_[k];
-    if (tell == nullptr && !piece.changes && !piece.ends) continue;
+    if (tell == nullptr && !piece.changes && !piece.ends && !grazes(piece)) continue;
     Derivatives to = step;
     regular = lead_to(piece, to);
     if (!regular) break;
@@ -193,9 +192,16 @@ bool MotionThroughEvents::follow(Derivatives& step, const AtPiece* tell) {
   return regular;
 }
 
+/// Whether what would change the motion only touches zero there.
+bool MotionThroughEvents::grazes(const Piece& piece) const {
+  return piece.touches && std::any_of(piece.events.begin(), piece.events.end(),
+                                      [&](std::size_t i) { return events_[i].changes_motion(); });
+}
+
 bool MotionThroughEvents::linearise() {
   chain_.reset();
-  const bool changes = std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.changes; });
+  const bool changes =
+      std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& p) { return p.changes || grazes(p); });
   if (is_over_) throw std::invalid_argument("the run is ended by an event: no step follows it");
   if (!changes && conflict_.empty()) return motion_->linearise();
   Derivatives step;

@@ -403,6 +403,9 @@ TEST(EventsOfBodiesWithoutDerivative, AreToldInOneLine) {
   turns[0].function = [highest](const VariedVector& seen) { return V(place(seen, 0)(0) - (highest + 1e-7)); };
   turns[0].tolerance = 1e-4;
   expect_none(subject, turns, "event \"passes\" only grazes zero");
+  turns[0].kick = Colliding::events()[1].kick;
+  MotionThroughEvents kicked = motion_of(subject, turns);
+  EXPECT_THROW(propagate_backward(kicked, Colliding::steps), EventWithoutDerivative);
   // At a node: its time depends on what is given.
   EventSensitivities at_node = motion_of(subject, {}).run(10, Eigen::MatrixXd(16, 0));
   const double there = at_node.observed(0);

@@ -131,4 +131,19 @@ TEST(FunctionWatch, ZeroForAWhileIsNoEvent) {
   EXPECT_TRUE(watch.starts_there());
 }
 
+/// A kick at a node leaves a rest of no length, which ends where the function is zero.
+TEST(FunctionWatch, WhatPassedAtANodeDoesNotPassThereAgain) {
+  for (const double before : {1.0, -1.0}) {
+    FunctionWatch watch(event_at_zero("gate", "q"));
+    watch.next(before, 0);
+    ASSERT_TRUE(watch.next(0, 1));
+    const auto found = watch.find([before](double share) { return before * (1 - share); });
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_FALSE(watch.next_from(0, found[0].passing, 0, 1));
+    EXPECT_TRUE(!watch.next(-before, 2) || watch.find([before](double share) { return -before * share; }).empty());
+    ASSERT_TRUE(watch.next(before, 3));
+    EXPECT_EQ(watch.find([before](double share) { return before * (2 * share - 1); }).size(), 1U);
+  }
+}
+
 }  // namespace
