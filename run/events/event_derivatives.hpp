@@ -17,6 +17,15 @@
 
 namespace lagroid {
 
+/// Where the time of an event has no derivative, or a part of a step none of its own.
+namespace event_limits {
+inline constexpr double grazing = 1e-8;   ///< a rate, of its terms: the function only touches zero
+inline constexpr double together = 1e-9;  ///< between two events, of a step: it is not known which is first
+/// Of a part, of a step: the derivative of a shorter one is that of momenta which are differences of places over its
+/// duration.
+inline constexpr double shortest = 5e-7;
+}  // namespace event_limits
+
 struct EventSensitivities {
   SolveStatus status = SolveStatus::converged;
   std::string message;

@@ -142,11 +142,6 @@ template <DiscreteSystem Sys> class EventPropagation {
   }
 
  private:
-  static constexpr double grazing = 1e-8;
-  static constexpr double together = 1e-9;  // of a step
-  /// Of a step: a rest that is shorter is made with the next step, for its own derivative is that of momenta which are
-  /// differences of places over its duration.
-  static constexpr double shortest = 5e-7;
   using Point = TrajectoryPoint<Sys>;
   struct Found {
     std::size_t event;
@@ -223,12 +218,14 @@ template <DiscreteSystem Sys> class EventPropagation {
                                                "\" is zero at the start, and what follows has no derivative there");
     }
     while (!suspects.empty() && !is_over_) {
-      if (kicks_ == 100) return fail(SolveStatus::not_converged, "events follow their own kicks without end");
+      if (kicks_ == most_changes_in_step)
+        return fail(SolveStatus::not_converged, "events follow their own kicks without end");
       look_into_rest(std::exchange(suspects, {}), suspects);
     }
     if (is_over_) return;
     out_.steps = number;
-    if (kicks_ > 0 && node.time - base_.time < shortest * (node.time - begun)) {
+    // A rest that is shorter is made with the next step.
+    if (kicks_ > 0 && node.time - base_.time < event_limits::shortest * (node.time - begun)) {
       if (number == observed_node_)
         fail(SolveStatus::singular,
              "node " + std::to_string(number) + " is the time of a kick, where it has no derivative");
@@ -260,7 +257,7 @@ template <DiscreteSystem Sys> class EventPropagation {
         found.push_back({i, each.share, each.passing});
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.share < b.share; });
     for (std::size_t k = 0; k < found.size() && !is_over_; ++k) {
-      if (k + 1 < found.size() && found[k + 1].share - found[k].share <= together)
+      if (k + 1 < found.size() && found[k + 1].share - found[k].share <= event_limits::together)
         return fail(SolveStatus::singular, named(found[k]) + " and " + named(found[k + 1]) +
                                                " happen together, where what follows has no derivative");
       happen(found[k], next);
@@ -280,7 +277,7 @@ template <DiscreteSystem Sys> class EventPropagation {
     const double by_time = g.derivatives(0, count_);
     const double rate = by_state.dot(step.by_duration) + by_time;
     const double terms = by_state.cwiseAbs().dot(step.by_duration.cwiseAbs()) + std::abs(by_time);
-    if (found.passing == Passing::touching || std::abs(rate) <= grazing * terms)
+    if (found.passing == Passing::touching || std::abs(rate) <= event_limits::grazing * terms)
       return fail(SolveStatus::singular, named(found) + " only grazes zero, where its time has no derivative: t = " +
                                              std::to_string(inside.time));
     if (!g.derivatives.allFinite())

@@ -26,9 +26,6 @@ struct NoChange {
   std::string why;
 };
 
-/// Times of one step that differ by less, relative to it, cannot be told apart.
-constexpr double indistinguishable = 1e-11;
-
 /// The end of those that happen at the time of the first, as far as shares of the step tell.
 template <class Iterator> Iterator together_with(Iterator first, Iterator end) {
   return std::find_if(first, end, [first](const auto& each) { return each.share > first->share + indistinguishable; });
@@ -219,11 +216,10 @@ std::vector<EventWatch::Found> EventWatch::find_in_step() {
 }
 
 EventWatch::Goes EventWatch::look_into_step() {
-  constexpr int most_kicks = 100;
   looked_within_ = true;
   try {
     for (int kicks = 0; !suspects_.empty(); ++kicks) {
-      if (kicks == most_kicks) {
+      if (kicks == most_changes_in_step) {
         reason_ = fmt::format("{}: follows its own kicks without end, {} times between t = {:.6g} and {:.6g}",
                               named(watches_[looking_for_].event), kicks, time_, arrived_);
         return Goes::failed;

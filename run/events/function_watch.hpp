@@ -38,6 +38,11 @@ struct FoundInStep {
   Passing passing;
 };
 
+/// Of a step: times that differ by less cannot be told apart.
+inline constexpr double indistinguishable = 1e-11;
+/// More changes than these in one step follow each other without end.
+inline constexpr int most_changes_in_step = 100;
+
 class FunctionWatch {
  public:
   explicit FunctionWatch(const Event& event)

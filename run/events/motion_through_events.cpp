@@ -12,10 +12,6 @@ namespace lagroid {
 
 namespace {
 
-/// Of a step: what is nearer cannot be told apart, and what is nearer has no derivative of its own.
-constexpr double indistinguishable = 1e-11, together = 1e-9;
-constexpr int most_changes = 100;
-
 /// Numbers with names, as plain ones.
 struct Unnamed {
   NumberArchive& archive;
@@ -84,7 +80,7 @@ StepReport MotionThroughEvents::advance() try {
                       events_[i].name);
   }
   for (int changes = 0; !suspects.empty() && !is_over_; ++changes) {
-    if (changes == most_changes) {
+    if (changes == most_changes_in_step) {
       reason_ = "events follow their own changes without end: they want a direction";
       return {SolveStatus::not_converged};
     }
@@ -150,7 +146,7 @@ std::string MotionThroughEvents::conflict_of(const std::vector<Found>& found, st
     const ObservedEvent &one = events_[found[a].event], &other = events_[found[b].event];
     return (one.decides() || other.decides()) && (one.when != other.when || one.when.empty());
   };
-  for (std::size_t k = first; k < found.size() && found[k].share - found[first].share <= together; ++k)
+  for (std::size_t k = first; k < found.size() && found[k].share - found[first].share <= event_limits::together; ++k)
     for (std::size_t j = first; j < std::min(k, last); ++j)
       if (differ(j, k))
         return fmt::format("event \"{}\" and event \"{}\" happen together, where what follows has no derivative",

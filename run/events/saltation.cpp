@@ -15,9 +15,8 @@ namespace lagroid {
 
 namespace {
 
-constexpr double grazing = 1e-8;
-/// Of a step: the derivative of a shorter part is that of differences over its duration.
-constexpr double shortest = 5e-7;
+using event_limits::grazing;
+using event_limits::shortest;
 
 std::string at_node(const std::string& event, double time) {
   return fmt::format(

@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 

@@ -1,5 +1,6 @@
 // Exact derivatives of scenes of bodies by controlled steps, whose sizes and times depend on the start and on numbers:
 // against extrapolated differences of the motion itself, and forward against backward.
+#include "all_that_moves.hpp"
 #include "number_names.hpp"
 
 #include <lagroid/solvers/sensitivity/propagate.hpp>
@@ -53,25 +54,18 @@ Stars drawn(std::mt19937_64& random) {
   return out;
 }
 
-/// The time, places, attitudes, momenta and energies.
+/// The time, and all that moves.
 VariedNumbers all_of_it(const ObservedScene& node) {
-  std::vector<VariedNumber> out{node.at.time};
-  const auto append = [&](const auto& each) { out.insert(out.end(), each.data(), each.data() + each.size()); };
-  for (std::size_t f = 0; f < node.momentum.size(); ++f) append(node.at.x[f]), append(node.momentum[f]);
-  for (std::size_t r = 0; r < node.spin.size(); ++r) append(node.at.attitude[r]), append(node.spin[r]);
-  out.push_back(node.kinetic);
-  out.push_back(node.potential);
-  return Eigen::Map<const VariedNumbers>(out.data(), Eigen::Index(out.size()));
+  const VariedNumbers moving = all_that_moves(node);
+  VariedNumbers out(1 + moving.size());
+  out << node.at.time, moving;
+  return out;
 }
 Eigen::VectorXd all_of_it(const Multibody& motion) {
-  std::vector<double> out{motion.time()};
-  const auto append = [&](const auto& each) { out.insert(out.end(), each.data(), each.data() + each.size()); };
-  const Multibody::Momenta m = motion.momenta();
-  for (std::size_t f = 0; f < m.linear.size(); ++f) append(motion.configuration().x[f]), append(m.linear[f]);
-  for (std::size_t r = 0; r < m.spin.size(); ++r) append(motion.configuration().attitude[r]), append(m.spin[r]);
-  out.push_back(motion.kinetic_energy(m));
-  out.push_back(motion.potential_energy());
-  return Eigen::Map<const Eigen::VectorXd>(out.data(), Eigen::Index(out.size()));
+  const Eigen::VectorXd moving = all_that_moves(motion);
+  Eigen::VectorXd out(1 + moving.size());
+  out << motion.time(), moving;
+  return out;
 }
 
 Multibody begun(const Stars& write, const Eigen::VectorXd& displacement = {}) {

@@ -1,5 +1,6 @@
 // Exact derivatives of runs of scenes of bodies: against extrapolated differences of the motion itself, forward against
 // backward, and the symplectic form.
+#include "all_that_moves.hpp"
 #include "number_names.hpp"
 
 #include <lagroid/solvers/sensitivity/propagate.hpp>
@@ -178,33 +179,11 @@ struct Steered {
 constexpr double h = 0.02;
 constexpr long steps = 12;
 
-/// Places, attitudes, momenta and energies of all that moves.
-VariedNumbers all_of_it(const ObservedScene& node) {
-  std::vector<VariedNumber> out;
-  const auto append = [&](const auto& each) { out.insert(out.end(), each.data(), each.data() + each.size()); };
-  for (std::size_t f = 0; f < node.momentum.size(); ++f) append(node.at.x[f]), append(node.momentum[f]);
-  for (std::size_t r = 0; r < node.spin.size(); ++r) append(node.at.attitude[r]), append(node.spin[r]);
-  out.push_back(node.kinetic);
-  out.push_back(node.potential);
-  return Eigen::Map<const VariedNumbers>(out.data(), Eigen::Index(out.size()));
-}
-/// The same of a motion.
-Eigen::VectorXd all_of_it(const Multibody& motion) {
-  std::vector<double> out;
-  const auto append = [&](const auto& each) { out.insert(out.end(), each.data(), each.data() + each.size()); };
-  const Multibody::Momenta m = motion.momenta();
-  for (std::size_t f = 0; f < m.linear.size(); ++f) append(motion.configuration().x[f]), append(m.linear[f]);
-  for (std::size_t r = 0; r < m.spin.size(); ++r) append(motion.configuration().attitude[r]), append(m.spin[r]);
-  out.push_back(motion.kinetic_energy(m));
-  out.push_back(motion.potential_energy());
-  return Eigen::Map<const Eigen::VectorXd>(out.data(), Eigen::Index(out.size()));
-}
-
 template <class Written> LinearisedScene linearised(const Written& write, const Eigen::VectorXd& displacement = {}) {
   Multibody motion(write(write.numbers), h);
   if (displacement.size() > 0) displace(motion, displacement);
   return {std::move(motion), names(write.numbers.size()), write.numbers, [write](const auto& x) {
-            return WrittenScene{write(x), [](const ObservedScene& node) { return all_of_it(node); }};
+            return WrittenScene{write(x), [](const ObservedScene& node) { return all_that_moves(node); }};
           }};
 }
 
@@ -212,7 +191,7 @@ template <class Written> Eigen::VectorXd end_of(const Written& write, const Eige
   Multibody motion(write(write.numbers), h);
   if (displacement.size() > 0) displace(motion, displacement);
   for (long k = 0; k < steps; ++k) EXPECT_TRUE(motion.advance().converged()) << "step " << k;
-  return all_of_it(motion);
+  return all_that_moves(motion);
 }
 
 /// How far directions are from what the differences of a run tend to, over their size.
@@ -313,13 +292,13 @@ TEST(SceneGradientsComposed, AreWhatDifferencesTendTo) {
   const auto run = [&](const Machine& other) {
     Multibody motion(other(other.numbers), h, options);
     for (long k = 0; k < steps; ++k) EXPECT_TRUE(motion.advance().converged()) << "step " << k;
-    return all_of_it(motion);
+    return all_that_moves(motion);
   };
   const auto shares = options.composition.coefficients;
   LinearisedScene motion(
       Multibody(write(write.numbers), h, options), names(write.numbers.size()), write.numbers,
       [write](const auto& x) {
-        return WrittenScene{write(x), [](const ObservedScene& node) { return all_of_it(node); }};
+        return WrittenScene{write(x), [](const ObservedScene& node) { return all_that_moves(node); }};
       },
       LinearisedScene::Stages{Multibody(write(write.numbers), h), {shares.begin(), shares.end()}});
   const Propagated end = propagate_backward(motion, steps);
