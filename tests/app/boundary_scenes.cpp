@@ -18,6 +18,7 @@
 using namespace lagroid;
 using namespace lagroid::app;
 
+namespace app_boundary_scenes_tests {
 namespace {
 
 TEST(ContinuationNote, SolutionsThatMeetAreNotLost) {
@@ -164,3 +165,4 @@ TEST(BoundarySteps, RefuseWhatTheyDoNotHave) {
 }
 
 }  // namespace
+}  // namespace app_boundary_scenes_tests

@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+namespace app_check_command_tests {
 namespace {
 
 constexpr std::array at_once{"pendulum_chain",    "learned_hamiltonian", "lotka_volterra", "three_species",
@@ -151,3 +152,4 @@ TEST_F(CommandLine, CheckRefusesWhatRunRefuses) {
 }
 
 }  // namespace
+}  // namespace app_check_command_tests

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+namespace app_cite_command_tests {
 namespace {
 
 class Cite : public CommandLine {
@@ -97,3 +98,4 @@ TEST_F(Cite, RefusesWhatItCannotRead) {
 }
 
 }  // namespace
+}  // namespace app_cite_command_tests

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+namespace app_control_command_tests {
 namespace {
 
 class Control : public CommandLine {
@@ -343,3 +344,4 @@ TEST_F(Control, MistakesAreOneLine) {
 }
 
 }  // namespace
+}  // namespace app_control_command_tests

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+namespace app_hostile_text_tests {
 namespace {
 
 using Json = nlohmann::json;
@@ -340,3 +341,4 @@ TEST_F(HostileText, TooManyMembersAreRefusedAtOnce) {
 }
 
 }  // namespace
+}  // namespace app_hostile_text_tests

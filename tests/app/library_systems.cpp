@@ -2,6 +2,7 @@
 #include <program.hpp>
 #include <whole_program.hpp>
 
+namespace app_library_systems_tests {
 namespace {
 
 const bool known = [] {
@@ -12,3 +13,4 @@ const bool known = [] {
 }();
 
 }  // namespace
+}  // namespace app_library_systems_tests

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+namespace app_optimise_command_tests {
 namespace {
 
 class Optimise : public CommandLine {
@@ -320,3 +321,4 @@ TEST_F(Optimise, OrdersOfConstrainedMapsAreReproduced) {
 }
 
 }  // namespace
+}  // namespace app_optimise_command_tests

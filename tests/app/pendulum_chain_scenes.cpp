@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+namespace app_pendulum_chain_scenes_tests {
 namespace {
 
 using Json = nlohmann::json;
@@ -323,3 +324,4 @@ TEST_F(PendulumChains, AScenesTargetIsReached) {
 }
 
 }  // namespace
+}  // namespace app_pendulum_chain_scenes_tests

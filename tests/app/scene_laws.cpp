@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace lagroid {
+namespace lagroid::app_scene_laws_tests {
 namespace {
 
 using namespace multibody;
@@ -302,4 +302,4 @@ TEST(SceneLaws, OrderFailsWhereForcesJump) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::app_scene_laws_tests

@@ -12,6 +12,7 @@
 using namespace lagroid;
 using namespace lagroid::app;
 
+namespace app_scene_reader_tests {
 namespace {
 
 class Scene : public ::testing::Test {
@@ -162,3 +163,4 @@ end = { position = [1, 0.5, 0] }
 }
 
 }  // namespace
+}  // namespace app_scene_reader_tests

@@ -19,7 +19,7 @@
 #include <memory>
 #include <random>
 
-namespace lagroid {
+namespace lagroid::core_any_system_tests {
 namespace {
 
 /// Whether two results of the same function are the same. Compiled twice they are to the bit, but for products that are
@@ -345,4 +345,4 @@ TEST(SizedSystem, IsSolvedByASolverOfOnesOwn) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::core_any_system_tests

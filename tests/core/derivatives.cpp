@@ -20,6 +20,7 @@
 
 using namespace lagroid;
 
+namespace core_derivatives_tests {
 namespace {
 
 template <class Sys> void expect_laws(const Sys& system) {
@@ -206,3 +207,4 @@ TEST(BrokenDerivatives, OfAFrameWithTheWrongBracket) {
 }
 
 }  // namespace
+}  // namespace core_derivatives_tests

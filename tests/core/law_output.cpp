@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace core_law_output_tests {
 namespace {
 
 std::string said(const std::function<double()>& defect) {
@@ -49,3 +50,4 @@ TEST(CheckLaw, SaysWhatWasThrown) {
 }
 
 }  // namespace
+}  // namespace core_law_output_tests

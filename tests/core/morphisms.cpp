@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace core_morphisms_tests {
 namespace {
 
 Matrix<double, 3, 3> draw_attitude() { return SO3::exp(laws::draw_vector<3>(2.0)); }
@@ -199,3 +200,4 @@ TEST(Reduction, OfAnotherBodyIsFoundOut) {
 }
 
 }  // namespace
+}  // namespace core_morphisms_tests

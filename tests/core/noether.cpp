@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace core_noether_tests {
 namespace {
 
 template <class Sys, class Draw> std::vector<Step<Sys>> samples(const Sys& system, const Draw& draw) {
@@ -120,3 +121,4 @@ TEST(BrokenSymmetry, FailsBothLaws) {
 }
 
 }  // namespace
+}  // namespace core_noether_tests

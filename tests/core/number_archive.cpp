@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace core_number_archive_tests {
 namespace {
 
 template <class Sys> std::vector<double> tape_of(Integrator<Sys>& integrator) {
@@ -149,3 +150,4 @@ TEST(BrokenMarch, ThatForgetsItsInverseGoesOnWithOtherBits) {
 }
 
 }  // namespace
+}  // namespace core_number_archive_tests

@@ -18,6 +18,7 @@
 using namespace lagroid;
 using namespace lagroid::app;
 
+namespace core_parameters_tests {
 namespace {
 
 enum class Law { hooke, quartic };
@@ -171,3 +172,4 @@ TEST(AnySystem, SpeaksOfProducts) {
 }
 
 }  // namespace
+}  // namespace core_parameters_tests

@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace core_registers_tests {
 namespace {
 
 TEST(Registers, OfAnInstallationDecideTheLayout) {
@@ -37,3 +38,4 @@ TEST(Version, IsOne) {
 }
 
 }  // namespace
+}  // namespace core_registers_tests

@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace core_scalars_tests {
 namespace {
 
 using M = HyperDual<double, 2, 3>;
@@ -168,3 +169,4 @@ TEST(HyperDual, LongDoubleInstantiation) {
 }
 
 }  // namespace
+}  // namespace core_scalars_tests

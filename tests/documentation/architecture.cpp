@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::documentation_tests {
+namespace lagroid::documentation_tests::architecture_tests {
 namespace {
 
 /// The folders of the sources, each of which may include those before it (docs/architecture.md).
@@ -231,4 +231,4 @@ TEST(BrokenArchitecture, AMethodThatIsSpeltAgainIsFoundOut) {
 }
 
 }  // namespace
-}  // namespace lagroid::documentation_tests
+}  // namespace lagroid::documentation_tests::architecture_tests

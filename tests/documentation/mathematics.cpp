@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::documentation_tests {
+namespace lagroid::documentation_tests::mathematics_tests {
 namespace {
 
 TEST(Mathematics, WhatItNamesExists) { EXPECT_EQ(unknown_names(read("docs/mathematics.md")), none); }
@@ -83,4 +83,4 @@ TEST(BrokenPage, AClaimThatNightlyTestsAloneBearIsFoundOut) {
 }
 
 }  // namespace
-}  // namespace lagroid::documentation_tests
+}  // namespace lagroid::documentation_tests::mathematics_tests

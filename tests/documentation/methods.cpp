@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::documentation_tests {
+namespace lagroid::documentation_tests::methods_tests {
 namespace {
 
 using Words = std::set<std::string>;
@@ -100,4 +100,4 @@ TEST(BrokenPage, AMethodOfNothingIsFoundOut) {
 }
 
 }  // namespace
-}  // namespace lagroid::documentation_tests
+}  // namespace lagroid::documentation_tests::methods_tests

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::documentation_tests {
+namespace lagroid::documentation_tests::pages_tests {
 namespace {
 
 /// The text without the indentation of its lines.
@@ -217,4 +217,4 @@ TEST(BrokenPage, ANameOfNothingIsFoundOut) {
 }
 
 }  // namespace
-}  // namespace lagroid::documentation_tests
+}  // namespace lagroid::documentation_tests::pages_tests

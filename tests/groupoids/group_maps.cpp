@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_group_maps_tests {
 namespace {
 
 template <class G> class GroupMaps : public ::testing::Test {
@@ -170,3 +171,4 @@ TEST(SO3, QuaternionsRoundTrip) {
 }
 
 }  // namespace
+}  // namespace groupoids_group_maps_tests

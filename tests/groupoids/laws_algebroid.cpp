@@ -16,6 +16,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_laws_algebroid_tests {
 namespace {
 
 template <class G> class AlgebroidLaws : public testing::Test {};
@@ -138,3 +139,4 @@ TEST(BrokenAlgebroid, NotLinear) {
 }
 
 }  // namespace
+}  // namespace groupoids_laws_algebroid_tests

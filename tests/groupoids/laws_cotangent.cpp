@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_laws_cotangent_tests {
 namespace {
 
 TEST(CotangentGroupoid, IsAGroupoid) {
@@ -121,3 +122,4 @@ TEST(BrokenCotangentGroupoid, OfAGroupoidWhoseBisectionsMissTheirArrows) {
 }
 
 }  // namespace
+}  // namespace groupoids_laws_cotangent_tests

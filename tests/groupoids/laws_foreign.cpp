@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_laws_foreign_tests {
 namespace {
 
 TEST(ForeignGroupoid, PassesTheLaws) {
@@ -110,3 +111,4 @@ TEST(Laws, ThatAreBrokenAreNotUnjudgedHoweverManySamplesArePassedOver) {
 }
 
 }  // namespace
+}  // namespace groupoids_laws_foreign_tests

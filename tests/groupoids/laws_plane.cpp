@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_laws_plane_tests {
 namespace {
 
 template <class G> class GroupoidLaws : public ::testing::Test {};
@@ -21,3 +22,4 @@ TYPED_TEST(GroupoidLaws, Hold) {
 }
 
 }  // namespace
+}  // namespace groupoids_laws_plane_tests

@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_laws_products_tests {
 namespace {
 
 template <class G> class GroupoidLaws : public ::testing::Test {};
@@ -40,3 +41,4 @@ TEST(Anchor, OfAProductSeesOnlyTheObjects) {
 }
 
 }  // namespace
+}  // namespace groupoids_laws_products_tests

@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_laws_space_tests {
 namespace {
 
 template <class G> class GroupoidLaws : public ::testing::Test {};
@@ -71,3 +72,4 @@ TEST(Orthogonal, AxiomsOnBothComponents) {
 }
 
 }  // namespace
+}  // namespace groupoids_laws_space_tests

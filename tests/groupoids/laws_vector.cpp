@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_laws_vector_tests {
 namespace {
 
 template <class G> class GroupoidLaws : public ::testing::Test {};
@@ -20,3 +21,4 @@ TYPED_TEST(GroupoidLaws, Hold) {
 }
 
 }  // namespace
+}  // namespace groupoids_laws_vector_tests

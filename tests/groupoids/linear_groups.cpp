@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_linear_groups_tests {
 namespace {
 
 using Determinant = LinearFibre::Determinant;
@@ -167,3 +168,4 @@ TEST(LinearGroups, LeavingTheReachOfExpIsTyped) {
 }
 
 }  // namespace
+}  // namespace groupoids_linear_groups_tests

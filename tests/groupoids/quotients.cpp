@@ -16,6 +16,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_quotients_tests {
 namespace {
 
 laws::GroupoidLawOptions small() {
@@ -94,3 +95,4 @@ TEST(BrokenConnection, IsFoundOut) {
 }
 
 }  // namespace
+}  // namespace groupoids_quotients_tests

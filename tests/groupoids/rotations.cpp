@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_rotations_tests {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -108,3 +109,4 @@ TEST(Rotations3, AreRodrigues) {
 }
 
 }  // namespace
+}  // namespace groupoids_rotations_tests

@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_subgroupoids_tests {
 namespace {
 
 /// A body on an axle: SO(2) as the wide subgroupoid of SO(3) that leaves e3 where it is.
@@ -101,3 +102,4 @@ TEST(NoSubgroupoid, TheProductOfTwoRollingArrowsDoesNotRoll) {
 }
 
 }  // namespace
+}  // namespace groupoids_subgroupoids_tests

@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace groupoids_time_extended_tests {
 namespace {
 
 template <class Sys> FixedStepIntegrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& start) {
@@ -218,3 +219,4 @@ TEST(DrivenPendulum, StandsUprightOnAFastSupport) {
 }
 
 }  // namespace
+}  // namespace groupoids_time_extended_tests

@@ -12,6 +12,7 @@
 using namespace lagroid;
 using namespace lagroid::app;
 
+namespace run_energy_drift_tests {
 namespace {
 
 struct LongRun {
@@ -69,3 +70,4 @@ INSTANTIATE_TEST_SUITE_P(Systems, EnergyDrift,
                          [](const auto& run) { return std::string(run.param.scene); });
 
 }  // namespace
+}  // namespace run_energy_drift_tests

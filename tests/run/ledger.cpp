@@ -19,6 +19,7 @@
 
 using namespace lagroid;
 
+namespace run_ledger_tests {
 namespace {
 
 template <class F> LedgerEntry judge(Promise promise, long samples, const F& value) {
@@ -280,3 +281,4 @@ TEST(OwnSystem, ThatFallsThroughACentreHasNoBoundedEnergy) {
 }
 
 }  // namespace
+}  // namespace run_ledger_tests

@@ -16,6 +16,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 
+namespace run_output_folders_tests {
 namespace {
 
 class Folders : public CommandLine {
@@ -471,3 +472,4 @@ TEST_F(Folders, NoThreadsIsOneLine) {
 }
 
 }  // namespace
+}  // namespace run_output_folders_tests

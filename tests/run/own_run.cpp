@@ -18,6 +18,7 @@ using namespace lagroid;
 
 namespace fs = std::filesystem;
 
+namespace run_own_run_tests {
 namespace {
 
 /// A mass that hangs on a spring from the origin of the plane. Its Lagrangian has the step as an argument.
@@ -200,3 +201,4 @@ TEST_F(OwnRun, OptionsThatCountNothingAreRefused) {
 }
 
 }  // namespace
+}  // namespace run_own_run_tests

@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace run_own_run_by_tests {
 namespace {
 
 /// A mass on a spring, whose position after a time t is cos t q + sin t p.
@@ -87,3 +88,4 @@ TEST(OwnStudy, WhatIsNoStudyIsRefused) {
 }
 
 }  // namespace
+}  // namespace run_own_run_by_tests

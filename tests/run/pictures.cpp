@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace run_pictures_tests {
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
@@ -237,3 +238,4 @@ TEST_F(Pictures, OfLongRunsAreDrawnFromWhatCanBeSeen) {
 }
 
 }  // namespace
+}  // namespace run_pictures_tests

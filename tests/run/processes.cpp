@@ -13,6 +13,7 @@
 
 #include <unistd.h>
 
+namespace run_processes_tests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,3 +76,4 @@ TEST_F(Processes, KnowABrokenPipe) {
 }
 
 }  // namespace
+}  // namespace run_processes_tests

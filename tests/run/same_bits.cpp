@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string>
 
+namespace run_same_bits_tests {
 namespace {
 
 std::string contents(const fs::path& file) {
@@ -47,3 +48,4 @@ TEST_F(SameBits, WhateverTheThreadsAndProcessors) {
 }
 
 }  // namespace
+}  // namespace run_same_bits_tests

@@ -26,6 +26,7 @@
 using namespace lagroid;
 using namespace lagroid::app;
 
+namespace run_study_tests {
 namespace {
 
 Section example(const std::string& name, const std::vector<std::string>& overrides = {}) {
@@ -454,3 +455,4 @@ TEST_F(Study, ASceneWithATargetIsRunAndResumed) {
 }
 
 }  // namespace
+}  // namespace run_study_tests

@@ -16,6 +16,7 @@
 
 using namespace lagroid;
 
+namespace solvers_crouch_grossman_tests {
 namespace {
 
 TEST(CrouchGrossman, CoefficientsSatisfyTheOrderConditions) {
@@ -213,3 +214,4 @@ TEST(CrouchGrossman, StepsOfAnySizeAreTaken) {
 }
 
 }  // namespace
+}  // namespace solvers_crouch_grossman_tests

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+namespace solvers_declared_methods_tests {
 namespace {
 
 using namespace lagroid;
@@ -113,3 +114,4 @@ TEST(DeclaredMethods, MoserVeselovGoesByItsHighestOrder) {
 }
 
 }  // namespace
+}  // namespace solvers_declared_methods_tests

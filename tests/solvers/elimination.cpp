@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::solvers_elimination_tests {
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
@@ -134,4 +134,4 @@ TEST(Elimination, LeavesOutRowsThatDependOnOthers) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::solvers_elimination_tests

@@ -13,6 +13,7 @@
 #include <random>
 #include <vector>
 
+namespace solvers_ensemble_tests {
 namespace {
 
 using namespace lagroid;
@@ -327,3 +328,4 @@ TEST(Ensemble, AWrongNumberOfConfigurationsIsRefused) {
 }
 
 }  // namespace
+}  // namespace solvers_ensemble_tests

@@ -19,6 +19,7 @@
 
 using namespace lagroid;
 
+namespace solvers_extrapolation_tests {
 namespace {
 
 using Table = ExtrapolationTable;
@@ -298,3 +299,4 @@ TEST(Extrapolation, AllocatesNothingInAStep) {
 }
 
 }  // namespace
+}  // namespace solvers_extrapolation_tests

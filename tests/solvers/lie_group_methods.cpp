@@ -21,6 +21,7 @@
 
 using namespace lagroid;
 
+namespace solvers_lie_group_methods_tests {
 namespace {
 
 constexpr int any = Eigen::Dynamic;
@@ -337,3 +338,4 @@ TEST(LieGroupMethods, OnVectorSpacesAreTheClassicalOnes) {
 }
 
 }  // namespace
+}  // namespace solvers_lie_group_methods_tests

@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace solvers_lie_newton_groups_tests {
 namespace {
 
 /// y = z tau(h g(y)) for a field that mixes the coordinates of y, by every iteration.
@@ -53,3 +54,4 @@ TEST(LieNewtonGroups, SolveImplicitSteps) {
 }
 
 }  // namespace
+}  // namespace solvers_lie_newton_groups_tests

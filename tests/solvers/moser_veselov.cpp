@@ -19,6 +19,7 @@
 
 using namespace lagroid;
 
+namespace solvers_moser_veselov_tests {
 namespace {
 
 using Moments = Vector<double, 3>;
@@ -309,3 +310,4 @@ TEST(MoserVeselov, IsPoisson) {
 }
 
 }  // namespace
+}  // namespace solvers_moser_veselov_tests

@@ -18,7 +18,7 @@
 #include <random>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::solvers_optimal_control_instances_tests {
 namespace {
 
 constexpr long stages = 50;
@@ -133,4 +133,4 @@ TEST(RandomInstances, OfTheSatelliteBesideACone) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::solvers_optimal_control_instances_tests

@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace solvers_projected_hamiltonian_tests {
 namespace {
 
 /// [H] (hameqpend): a spherical pendulum, as a user would write it.
@@ -213,3 +214,4 @@ TEST(ProjectedHamiltonian, OnACircleIsThePendulum) {
 }
 
 }  // namespace
+}  // namespace solvers_projected_hamiltonian_tests

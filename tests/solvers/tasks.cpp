@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+namespace solvers_tasks_tests {
 namespace {
 
 using namespace lagroid;
@@ -47,3 +48,4 @@ TEST(Tasks, NoneIsBegunAfterAnInterrupt) {
 }
 
 }  // namespace
+}  // namespace solvers_tasks_tests

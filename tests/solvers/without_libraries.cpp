@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace solvers_without_libraries_tests {
 namespace {
 
 /// What is asked of IPOPT, of a problem that is none.
@@ -77,3 +78,4 @@ TEST(WithoutLibraries, StepsAndTasksAreThere) {
 }
 
 }  // namespace
+}  // namespace solvers_without_libraries_tests

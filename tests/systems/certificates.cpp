@@ -23,6 +23,7 @@
 
 using namespace lagroid;
 
+namespace systems_certificates_tests {
 namespace {
 
 template <class Sys> using Draw = std::function<State<typename Sys::GroupoidType>()>;
@@ -166,3 +167,4 @@ TEST(Certificate, WhereNoStepCanBeTakenIsWithheld) {
 }
 
 }  // namespace
+}  // namespace systems_certificates_tests

@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace systems_gyrostat_tests {
 namespace {
 
 using G = Gyrostat::GroupoidType;
@@ -105,3 +106,4 @@ TEST(Gyrostat, ASpinningWheelSteadiesTheMiddleAxis) {
 }
 
 }  // namespace
+}  // namespace systems_gyrostat_tests

@@ -18,6 +18,7 @@
 
 using namespace lagroid;
 
+namespace systems_heavy_top_tests {
 namespace {
 
 using G = HeavyTop::GroupoidType;
@@ -173,3 +174,4 @@ TEST(HeavyTop, IsReconstructedOverTenThousandSteps) {
 }
 
 }  // namespace
+}  // namespace systems_heavy_top_tests

@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace systems_mechanics_tests {
 namespace {
 
 template <class Sys> FixedStepIntegrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& state) {
@@ -277,3 +278,4 @@ TEST(ConstrainedMomentum, IsFiniteWhereTheLagrangianSaysNothingOfWhatConstraints
 }
 
 }  // namespace
+}  // namespace systems_mechanics_tests

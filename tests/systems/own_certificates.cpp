@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace systems_own_certificates_tests {
 namespace {
 
 /// A pendulum that promises its energy, which is only bounded.
@@ -66,3 +67,4 @@ TEST(Certificate, OfForcesAndSkatesOnASphere) {
 }
 
 }  // namespace
+}  // namespace systems_own_certificates_tests

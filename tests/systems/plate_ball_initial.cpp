@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace systems_plate_ball_initial_tests {
 namespace {
 
 using G = PlateBall::GroupoidType;
@@ -189,3 +190,4 @@ TEST(Elastica, CurvatureIsMinusL3OverRSquaredSpeed) {
 }
 
 }  // namespace
+}  // namespace systems_plate_ball_initial_tests

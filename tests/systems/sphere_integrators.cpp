@@ -15,6 +15,7 @@
 
 using namespace lagroid;
 
+namespace systems_sphere_integrators_tests {
 namespace {
 
 using Chain = PendulumChain<Eigen::Dynamic>;
@@ -195,3 +196,4 @@ TEST(SphereIntegrators, StayWhereAStepFails) {
 }
 
 }  // namespace
+}  // namespace systems_sphere_integrators_tests

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+namespace command_line_boundary_values_tests {
 namespace {
 
 TEST_F(CommandLine, BoundaryValueJson) {
@@ -132,3 +133,4 @@ TEST_F(CommandLine, WhereAContinuationCannotBeginItsFromIsBlamed) {
 }
 
 }  // namespace
+}  // namespace command_line_boundary_values_tests

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+namespace command_line_files_tests {
 namespace {
 
 TEST_F(CommandLine, APipeThatNobodyReadsIsAnErrorAndLeavesNoLock) {
@@ -167,3 +168,4 @@ TEST_F(CommandLine, AFullStandardOutputIsSaid) {
 }
 
 }  // namespace
+}  // namespace command_line_files_tests

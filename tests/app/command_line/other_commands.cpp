@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+namespace command_line_other_commands_tests {
 namespace {
 
 TEST_F(CommandLine, AnUnknownCommandIsNamed) {
@@ -170,3 +171,4 @@ TEST_F(CommandLine, ListAndVersion) {
 }
 
 }  // namespace
+}  // namespace command_line_other_commands_tests

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+namespace command_line_runs_tests {
 namespace {
 
 TEST_F(CommandLine, ALastNodeThatIsNotFiniteIsNoSuccess) {
@@ -271,3 +272,4 @@ TEST_F(CommandLine, AnInterruptedRunKeepsWhatWasComputed) {
 }
 
 }  // namespace
+}  // namespace command_line_runs_tests

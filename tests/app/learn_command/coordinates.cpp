@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+namespace learn_command_coordinates_tests {
 namespace {
 
 /// Motions of q' = p, p' = -q - 2 c p, in closed form.
@@ -232,3 +233,4 @@ TEST_F(Learn, SaysWhichRunsItLearnsFrom) {
 }
 
 }  // namespace
+}  // namespace learn_command_coordinates_tests

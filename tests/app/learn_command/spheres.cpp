@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+namespace learn_command_spheres_tests {
 namespace {
 
 /// A trajectory of two points, with so many columns of times, and q_1x of the last one.
@@ -304,3 +305,4 @@ TEST_F(Learn, BadInputIsOneLineThatNamesTheRemedy) {
 }
 
 }  // namespace
+}  // namespace learn_command_spheres_tests

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::scene_tests {
+namespace lagroid::scene_tests::event_changes_tests {
 namespace {
 
 TEST_F(Events, SetParameters) {
@@ -362,4 +362,4 @@ TEST_F(Events, KickBodiesByControlledSteps) {
 }
 
 }  // namespace
-}  // namespace lagroid::scene_tests
+}  // namespace lagroid::scene_tests::event_changes_tests

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::scene_tests {
+namespace lagroid::scene_tests::events_tests {
 namespace {
 
 const std::string apsides = R"toml([[event]]
@@ -140,4 +140,4 @@ TEST_F(Events, ThatCannotBeReadAreRefusedInALine) {
 }
 
 }  // namespace
-}  // namespace lagroid::scene_tests
+}  // namespace lagroid::scene_tests::events_tests

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid::scene_tests {
+namespace lagroid::scene_tests::kinds_tests {
 namespace {
 
 const std::string bob = "[[body]]\nkind = \"point\"\nname = \"bob\"\nmass = 1\nposition = [0, 0, -1]\n";
@@ -336,4 +336,4 @@ TEST_F(Scenes, WideRunsAreDrawnFromAnExcerpt) {
 }
 
 }  // namespace
-}  // namespace lagroid::scene_tests
+}  // namespace lagroid::scene_tests::kinds_tests

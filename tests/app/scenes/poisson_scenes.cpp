@@ -9,6 +9,7 @@
 #include <iomanip>
 #include <string>
 
+namespace scenes_poisson_scenes_tests {
 namespace {
 
 TEST_F(CommandLine, PoissonScenesKeepWhatTheirMethodsPromise) {
@@ -109,3 +110,4 @@ TEST_F(CommandLine, SweepsOverSeedsAreEnsembles) {
 }
 
 }  // namespace
+}  // namespace scenes_poisson_scenes_tests

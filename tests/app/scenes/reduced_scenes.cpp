@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+namespace scenes_reduced_scenes_tests {
 namespace {
 
 using Rows = std::map<std::string, std::vector<double>>;
@@ -196,3 +197,4 @@ TEST_F(ReducedScenes, AreStudied) {
 }
 
 }  // namespace
+}  // namespace scenes_reduced_scenes_tests

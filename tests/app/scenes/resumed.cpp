@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace lagroid::scene_tests {
+namespace lagroid::scene_tests::resumed_tests {
 namespace {
 
 TEST_F(Scenes, AFinishedRunGoesOnWithTheSameBits) {
@@ -197,4 +197,4 @@ TEST_F(Scenes, WhatCannotBeTakenUpIsRefused) {
 }
 
 }  // namespace
-}  // namespace lagroid::scene_tests
+}  // namespace lagroid::scene_tests::resumed_tests

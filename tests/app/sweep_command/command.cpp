@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid::sweep_tests {
+namespace lagroid::sweep_tests::command_tests {
 namespace {
 
 TEST_F(Sweep, EveryExampleRuns) {
@@ -145,4 +145,4 @@ TEST_F(Sweep, AFullDiskIsOneLineAndThePartsBeforeItStay) {
 }
 
 }  // namespace
-}  // namespace lagroid::sweep_tests
+}  // namespace lagroid::sweep_tests::command_tests

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-namespace lagroid::sweep_tests {
+namespace lagroid::sweep_tests::designs_tests {
 namespace {
 
 TEST_F(Sweep, AGridIsInOrderAndItsMembersAreRuns) {
@@ -191,4 +191,4 @@ TEST_F(Sweep, ListsComeFromCsvAndHdf5) {
 }
 
 }  // namespace
-}  // namespace lagroid::sweep_tests
+}  // namespace lagroid::sweep_tests::designs_tests

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-namespace lagroid::sweep_tests {
+namespace lagroid::sweep_tests::members_tests {
 namespace {
 
 TEST_F(Sweep, SeriesHoldTheNodesThatWereAskedFor) {
@@ -174,4 +174,4 @@ TEST_F(Sweep, AMemberThatFailsInALaneFailsAlone) {
 }
 
 }  // namespace
-}  // namespace lagroid::sweep_tests
+}  // namespace lagroid::sweep_tests::members_tests

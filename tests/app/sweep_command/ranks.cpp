@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-namespace lagroid::sweep_tests {
+namespace lagroid::sweep_tests::ranks_tests {
 namespace {
 
 TEST_F(Sweep, ThreadsAndPartsLeaveTheSameBytes) {
@@ -129,4 +129,4 @@ TEST_F(Sweep, AKilledRankLosesNothingAfterTheRerun) {
 }
 
 }  // namespace
-}  // namespace lagroid::sweep_tests
+}  // namespace lagroid::sweep_tests::ranks_tests

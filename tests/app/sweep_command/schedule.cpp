@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+namespace sweep_command_schedule_tests {
 namespace {
 
 using lagroid::app::Message;
@@ -145,3 +146,4 @@ TEST(Schedule, AnInterruptEndsIt) {
 }
 
 }  // namespace
+}  // namespace sweep_command_schedule_tests

@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace reduction_constrained_level_tests {
 namespace {
 
 using Cylinder = Product<Pair<1>, SO2, Pair<1>>;
@@ -132,3 +133,4 @@ TEST(BrokenConstrainedLevel, OfAnotherMomentumIsSeen) {
 }
 
 }  // namespace
+}  // namespace reduction_constrained_level_tests

@@ -18,6 +18,7 @@
 
 using namespace lagroid;
 
+namespace reduction_geometric_phases_tests {
 namespace {
 
 using std::numbers::pi;
@@ -180,3 +181,4 @@ TEST(GeometricPhase, OfABallRolledRoundACircleIsItsHolonomy) {
 }
 
 }  // namespace
+}  // namespace reduction_geometric_phases_tests

@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace reduction_lagrange_poincare_tests {
 namespace {
 
 laws::GroupoidLawOptions small() {
@@ -82,3 +83,4 @@ TEST(BrokenLagrangePoincare, OfAConnectionThatIsNoneIsFoundOut) {
 }
 
 }  // namespace
+}  // namespace reduction_lagrange_poincare_tests

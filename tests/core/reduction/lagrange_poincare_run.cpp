@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace reduction_lagrange_poincare_run_tests {
 namespace {
 
 using Joined = Unsplit<Mechanical>;
@@ -54,3 +55,4 @@ TEST(BrokenLagrangePoincare, WithoutTheCurvatureIsSeen) {
 }
 
 }  // namespace
+}  // namespace reduction_lagrange_poincare_run_tests

@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_heavy_top_tests {
 namespace {
 
 using Attitude = Matrix<double, 3, 3>;
@@ -52,3 +53,4 @@ TEST(BrokenReduction, OfATopWithWeightSideways) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_heavy_top_tests

@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_kepler_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -42,3 +43,4 @@ TEST(BrokenReduction, OfAFlattenedPotentialByRotations) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_kepler_tests

@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_levels_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -113,3 +114,4 @@ TEST(MomentumLevel, OfAWheelThatTurnsHalfRoundInAStepIsNotANumber) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_levels_tests

@@ -8,6 +8,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_own_group_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -71,3 +72,4 @@ TEST(BrokenReduction, ByAMapThatIsNoMorphism) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_own_group_tests

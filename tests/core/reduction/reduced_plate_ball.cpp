@@ -8,6 +8,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_plate_ball_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -73,3 +74,4 @@ TEST(BrokenReduction, OfAPlateThatTurnsAboutAnotherPoint) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_plate_ball_tests

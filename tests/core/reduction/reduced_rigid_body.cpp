@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_rigid_body_tests {
 namespace {
 
 using Attitude = Matrix<double, 3, 3>;
@@ -130,3 +131,4 @@ TEST(BrokenReduction, OfATiltedBodyNamesItsWorstSample) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_rigid_body_tests

@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_rolling_ball_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -27,3 +28,4 @@ TEST_F(NonholonomicReduction, OfTheRollingBallByTranslations) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_rolling_ball_tests

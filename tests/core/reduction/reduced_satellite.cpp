@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_satellite_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -34,3 +35,4 @@ TEST(Reduction, OfTheSatelliteWithRotorsIsTheGyrostat) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_satellite_tests

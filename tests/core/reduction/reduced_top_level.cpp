@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_top_level_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -70,3 +71,4 @@ TEST(TopLevel, OfAnotherMomentumIsSeen) {
   EXPECT_FALSE(agree(run_level_beside(level, z, 20)));
 }
 }  // namespace
+}  // namespace reduction_reduced_top_level_tests

@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace reduction_reduced_turning_ball_tests {
 namespace {
 
 constexpr int steps = 1000;
@@ -46,3 +47,4 @@ TEST_F(NonholonomicReduction, NamesADistributionThatDoesNotDescend) {
 }
 
 }  // namespace
+}  // namespace reduction_reduced_turning_ball_tests

@@ -5,7 +5,7 @@
 #include <lagroid/systems/poisson/rotations.hpp>
 #include <lagroid/systems/poisson/spins.hpp>
 
-namespace lagroid {
+namespace lagroid::symplectic_groupoids_closed_forms_tests {
 namespace {
 
 TEST(SymplecticGroupoid, OfRotationsByTheExponential) {
@@ -21,4 +21,4 @@ TEST(SymplecticGroupoid, OfSpins) { expect_all_laws(SymplecticGroupoid<CayleyCha
 TEST(SymplecticGroupoid, OfPopulations) { expect_all_laws(SymplecticGroupoid<LogCanonicalChart<ThreeSpecies>>()); }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::symplectic_groupoids_closed_forms_tests

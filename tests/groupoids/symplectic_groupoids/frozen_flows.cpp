@@ -4,7 +4,7 @@
 #include <lagroid/core/testing/sampling.hpp>
 #include <lagroid/systems/poisson/lotka_volterra.hpp>
 
-namespace lagroid {
+namespace lagroid::symplectic_groupoids_frozen_flows_tests {
 namespace {
 
 TEST(SymplecticGroupoid, ByFrozenFlowsToRoundOff) {
@@ -13,4 +13,4 @@ TEST(SymplecticGroupoid, ByFrozenFlowsToRoundOff) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::symplectic_groupoids_frozen_flows_tests

@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace lagroid {
+namespace lagroid::symplectic_groupoids_symplectic_tests {
 namespace {
 
 TEST(SymplecticGroupoid, ByFrozenFlowsIsSymplecticWhateverTheBracket) {
@@ -166,4 +166,4 @@ TEST(BrokenSymplecticGroupoid, AMiddleThatIsNotTheMean) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::symplectic_groupoids_symplectic_tests

@@ -3,7 +3,7 @@
 
 #include <lagroid/systems/poisson/tops.hpp>
 
-namespace lagroid {
+namespace lagroid::symplectic_groupoids_turned_vectors_tests {
 namespace {
 
 TEST(SymplecticGroupoid, OfRotationsThatTurnAVector) {
@@ -16,4 +16,4 @@ TEST(SymplecticGroupoid, OfRotationsThatTurnThreeVectors) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::symplectic_groupoids_turned_vectors_tests

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid::multibody {
+namespace lagroid::multibody::bodies_tests {
 namespace {
 
 using V = VariedNumber;
@@ -430,4 +430,4 @@ TEST(EventsOfBodiesWithoutDerivative, AreToldInOneLine) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody
+}  // namespace lagroid::multibody::bodies_tests

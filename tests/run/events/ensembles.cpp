@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace events_ensembles_tests {
 namespace {
 
 using Found = EnsembleHappening<Pendulum>;
@@ -157,3 +158,4 @@ TEST(EnsembleEvents, JumpsPolesAndZerosAtTheStartAreNone) {
 }
 
 }  // namespace
+}  // namespace events_ensembles_tests

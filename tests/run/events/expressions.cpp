@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace events_expressions_tests {
 namespace {
 
 const std::vector<std::string> names{"t", "x", "velocity.x"};
@@ -88,3 +89,4 @@ TEST(DerivativesOfExpressions, GoOnFromThoseOfTheirNumbers) {
 }
 
 }  // namespace
+}  // namespace events_expressions_tests

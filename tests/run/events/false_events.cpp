@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace events_false_events_tests {
 namespace {
 
 using enum Event::Direction;
@@ -147,3 +148,4 @@ TEST(FunctionWatch, WhatPassedAtANodeDoesNotPassThereAgain) {
 }
 
 }  // namespace
+}  // namespace events_false_events_tests

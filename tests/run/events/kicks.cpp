@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace events_kicks_tests {
 namespace {
 
 using enum Event::Direction;
@@ -293,3 +294,4 @@ TEST(Events, ManyKicksLeaveTheLedgerItsVerdicts) {
 }
 
 }  // namespace
+}  // namespace events_kicks_tests

@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace events_laws_tests {
 namespace {
 
 using enum Event::Direction;
@@ -255,3 +256,4 @@ TEST(Events, TimesErrByRoundingOverTheSlope) {
 }
 
 }  // namespace
+}  // namespace events_laws_tests

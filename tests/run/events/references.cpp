@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace events_references_tests {
 namespace {
 
 using Json = nlohmann::json;
@@ -172,3 +173,4 @@ TEST(EventReferences, ThreeBodiesMeetClosely) {
 }
 
 }  // namespace
+}  // namespace events_references_tests

@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace events_sensitivities_tests {
 namespace {
 
 /// A ball that falls: nodes of parabolas are exact.
@@ -238,3 +239,4 @@ TEST(EventSensitivities, OfWhatOnlyGrazesAreRefused) {
 }
 
 }  // namespace
+}  // namespace events_sensitivities_tests

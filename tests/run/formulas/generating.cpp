@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace formulas_generating_tests {
 namespace {
 
 struct Swing {
@@ -216,3 +217,4 @@ TEST(FormulaHamiltonians, SayWhatIsWrongWithTheirTexts) {
 }
 
 }  // namespace
+}  // namespace formulas_generating_tests

@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace formulas_graph_tests {
 namespace {
 
 const std::vector<std::string> names{"x", "y", "x'"};
@@ -119,3 +120,4 @@ TEST(Formulas, ThatAreNoneAreRefusedInWords) {
 }
 
 }  // namespace
+}  // namespace formulas_graph_tests

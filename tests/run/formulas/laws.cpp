@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace formulas_laws_tests {
 namespace {
 
 const FormulaLagrangian& orbit() {
@@ -100,3 +101,4 @@ TEST(SizedLagrangianLaws, FailForDerivativesThatAreWrong) {
 }
 
 }  // namespace
+}  // namespace formulas_laws_tests

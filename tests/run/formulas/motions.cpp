@@ -17,6 +17,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace formulas_motions_tests {
 namespace {
 
 /// The texts of a scene.
@@ -297,3 +298,4 @@ TEST(FormulaLagrangians, KnowWhichFieldsAreSymmetries) {
 }
 
 }  // namespace
+}  // namespace formulas_motions_tests

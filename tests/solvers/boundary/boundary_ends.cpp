@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace boundary_boundary_ends_tests {
 namespace {
 
 constexpr int random_ends = 20;
@@ -144,3 +145,4 @@ TEST(CheapestOfAThousand, AttitudeControl) { expect_the_cheapest("attitude contr
 TEST(CheapestOfAThousand, PlateBall) { expect_the_cheapest("plate-ball", plate_ball_stages()); }
 
 }  // namespace
+}  // namespace boundary_boundary_ends_tests

@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace boundary_boundary_methods_tests {
 namespace {
 
 /// All three methods find the known trajectory among their solutions, and agree on its cost.
@@ -181,3 +182,4 @@ TEST(Ceres, ItsStallIsTypedAndExplained) {
 }
 
 }  // namespace
+}  // namespace boundary_boundary_methods_tests

@@ -22,6 +22,7 @@
 
 using namespace lagroid;
 
+namespace boundary_boundary_windings_tests {
 namespace {
 
 /// A groupoid as a user would write it: angles that are added, as points of the circle.
@@ -213,3 +214,4 @@ TEST(Configuration, ThatEndsElsewhereIsRefused) {
 }
 
 }  // namespace
+}  // namespace boundary_boundary_windings_tests

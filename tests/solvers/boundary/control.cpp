@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace boundary_control_tests {
 namespace {
 
 void expect_order_two(const std::vector<double>& errors) {
@@ -229,3 +230,4 @@ TEST(AttitudeControl, TurnsAboutTheForbiddenAxis) {
 }
 
 }  // namespace
+}  // namespace boundary_control_tests

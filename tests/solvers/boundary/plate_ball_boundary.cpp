@@ -15,6 +15,7 @@
 
 using namespace lagroid;
 
+namespace boundary_plate_ball_boundary_tests {
 namespace {
 
 using G = PlateBall::GroupoidType;
@@ -426,3 +427,4 @@ TEST(Kkt, SolveInvertsMultiply) {
 }
 
 }  // namespace
+}  // namespace boundary_plate_ball_boundary_tests

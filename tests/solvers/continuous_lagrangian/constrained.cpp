@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_constrained_tests {
 namespace {
 
 TEST(AnyLagrangian, OrdersOfEulersElastica) {
@@ -36,3 +37,4 @@ TEST(AnyLagrangian, ObjectConstraintsHoldAndTheOrderIsTwo) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_constrained_tests

@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_degenerate_tests {
 namespace {
 
 /// y' does not occur: degenerate.
@@ -39,3 +40,4 @@ TEST(AnyLagrangian, AConstraintThatLeavesAVelocityUndeterminedIsSingular) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_degenerate_tests

@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_failures_tests {
 namespace {
 
 /// v^2 / 2 - 50 exp(3 q): over a long step the action rises with the inner node, and has no stationary value.
@@ -38,3 +39,4 @@ TEST(AnyLagrangian, WhatIsNotFiniteIsATypedFailure) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_failures_tests

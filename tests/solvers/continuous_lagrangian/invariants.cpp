@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_invariants_tests {
 namespace {
 
 // Momenta that symmetries keep, to round-off, over a thousand steps; the energy in a band.
@@ -70,3 +71,4 @@ TEST(AnyLagrangian, AStepAllocatesNothing) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_invariants_tests

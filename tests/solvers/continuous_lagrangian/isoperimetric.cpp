@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_isoperimetric_tests {
 namespace {
 
 const State<Pair<3>> area_start{{0.8, -0.3, 0.1}, {0.5, 0.9, 1.3}};
@@ -51,3 +52,4 @@ TEST(AnyLagrangian, ConstraintsHoldAtEveryPointAndMultipliersAreThoseOfTheProble
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_isoperimetric_tests

@@ -6,6 +6,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_laws_tests {
 namespace {
 
 State<Pair<2>> draw_orbit() {
@@ -17,3 +18,4 @@ State<Pair<2>> draw_orbit() {
 TEST(AnyLagrangian, LawsOfAnOrbit) { expect_laws(Galerkin<Orbit, 3>{Orbit{}, 0.1}, draw_orbit); }
 
 }  // namespace
+}  // namespace continuous_lagrangian_laws_tests

@@ -6,6 +6,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_laws_constrained_tests {
 namespace {
 
 TEST(AnyLagrangian, LawsOfAConstrainedMotion) {
@@ -15,3 +16,4 @@ TEST(AnyLagrangian, LawsOfAConstrainedMotion) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_laws_constrained_tests

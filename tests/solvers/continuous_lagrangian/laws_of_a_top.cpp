@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_laws_of_a_top_tests {
 namespace {
 
 State<Top::GroupoidType> draw_top() {
@@ -18,3 +19,4 @@ State<Top::GroupoidType> draw_top() {
 TEST(AnyLagrangian, LawsOfATop) { expect_laws(Galerkin<Top, 2>{Top{}, 0.1}, draw_top); }
 
 }  // namespace
+}  // namespace continuous_lagrangian_laws_of_a_top_tests

@@ -11,6 +11,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_methods_tests {
 namespace {
 
 TEST(AnyLagrangian, InnerNodesInsideOrBesideTheArrowGiveOneStep) {
@@ -90,3 +91,4 @@ TEST(AnyLagrangian, VelocitiesInClosedFormAreThoseOfTheRetraction) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_methods_tests

@@ -5,6 +5,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_nodes_on_groups_tests {
 namespace {
 
 TEST(AnyLagrangian, OrderSixOfEulersElastica) {
@@ -17,3 +18,4 @@ TEST(AnyLagrangian, InnerNodesOfATopInsideOrBesideTheArrowGiveOneStep) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_nodes_on_groups_tests

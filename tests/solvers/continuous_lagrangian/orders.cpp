@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_orders_tests {
 namespace {
 
 template <class Sys> Case<Sys> swing(double horizon = 10) {
@@ -57,3 +58,4 @@ TEST(AnyLagrangian, AnOrderThatIsNotThereIsSeen) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_orders_tests

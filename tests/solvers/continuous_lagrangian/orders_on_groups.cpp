@@ -9,6 +9,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace continuous_lagrangian_orders_on_groups_tests {
 namespace {
 
 /// v^2 / 2 - q^2 / 2 - 3 q^4 / 400, whose errors of order ten are seen before round-off is.
@@ -85,3 +86,4 @@ TEST(AnyLagrangian, OrderOfABodyInAFluid) {
 }
 
 }  // namespace
+}  // namespace continuous_lagrangian_orders_on_groups_tests

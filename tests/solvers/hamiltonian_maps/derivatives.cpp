@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace lagroid::hamiltonian_map_tests {
+namespace lagroid::hamiltonian_map_tests::derivatives_tests {
 namespace {
 
 // ---- power series
@@ -112,4 +112,4 @@ TEST(ContinuousLegendreTransform, IsTheHamiltonianAndBackAgain) {
 }
 
 }  // namespace
-}  // namespace lagroid::hamiltonian_map_tests
+}  // namespace lagroid::hamiltonian_map_tests::derivatives_tests

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace lagroid::hamiltonian_map_tests {
+namespace lagroid::hamiltonian_map_tests::exact_tests {
 namespace {
 
 using enum GeneratingType;
@@ -113,4 +113,4 @@ TEST(ExactGeneratingFunctions, OfChordAndArcDifferByTheCubeOfTheStep) {  // (4.1
 }
 
 }  // namespace
-}  // namespace lagroid::hamiltonian_map_tests
+}  // namespace lagroid::hamiltonian_map_tests::exact_tests

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid::hamiltonian_map_tests {
+namespace lagroid::hamiltonian_map_tests::maps_tests {
 namespace {
 
 // ---- what the maps preserve
@@ -286,4 +286,4 @@ TEST(Maps, AllocateNothing) {
 }
 
 }  // namespace
-}  // namespace lagroid::hamiltonian_map_tests
+}  // namespace lagroid::hamiltonian_map_tests::maps_tests

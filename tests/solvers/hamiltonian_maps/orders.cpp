@@ -11,7 +11,7 @@
 #include <cmath>
 #include <functional>
 
-namespace lagroid::hamiltonian_map_tests {
+namespace lagroid::hamiltonian_map_tests::orders_tests {
 namespace {
 
 double slope(const std::function<double(int)>& error, int coarse, int fine) {
@@ -119,4 +119,4 @@ TEST(Orders, OfComposedSymmetricMapsAreFour) {
 }
 
 }  // namespace
-}  // namespace lagroid::hamiltonian_map_tests
+}  // namespace lagroid::hamiltonian_map_tests::orders_tests

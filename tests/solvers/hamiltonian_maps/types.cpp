@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace lagroid::hamiltonian_map_tests {
+namespace lagroid::hamiltonian_map_tests::types_tests {
 namespace {
 
 using enum GeneratingType;
@@ -214,4 +214,4 @@ TEST(Momenta, ThatAreTangentStaySo) {
 }
 
 }  // namespace
-}  // namespace lagroid::hamiltonian_map_tests
+}  // namespace lagroid::hamiltonian_map_tests::types_tests

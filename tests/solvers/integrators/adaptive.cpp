@@ -19,6 +19,7 @@
 
 using namespace lagroid;
 
+namespace integrators_adaptive_tests {
 namespace {
 
 /// l = (xi1^2 + 2 xi2^2) / 2 with xi3 = c on SO(3): the constraint is not homogeneous.
@@ -477,3 +478,4 @@ TEST(FirstStep, GrowsWithTheSquareRootOfTheAccuracy) {
 }
 
 }  // namespace
+}  // namespace integrators_adaptive_tests

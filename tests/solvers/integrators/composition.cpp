@@ -20,6 +20,7 @@
 
 using namespace lagroid;
 
+namespace integrators_composition_tests {
 namespace {
 
 template <class Sys>
@@ -237,3 +238,4 @@ TEST(Composition, AFailedStageLeavesTheStepUndone) {
 }
 
 }  // namespace
+}  // namespace integrators_composition_tests

@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace integrators_dynamics_tests {
 namespace {
 
 /// q1 alone enters: the system is not regular.
@@ -185,3 +186,4 @@ TEST(PoissonDefect, OnTheDualOfALieAlgebra) {
 }
 
 }  // namespace
+}  // namespace integrators_dynamics_tests

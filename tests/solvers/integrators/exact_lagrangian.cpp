@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace integrators_exact_lagrangian_tests {
 namespace {
 
 /// An arrow of the exact flow, and the exact discrete Lagrangian there.
@@ -108,3 +109,4 @@ TEST(ExactLagrangian, OfTheHeavyTop) {
 }
 
 }  // namespace
+}  // namespace integrators_exact_lagrangian_tests

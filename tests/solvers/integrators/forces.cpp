@@ -16,6 +16,7 @@
 
 using namespace lagroid;
 
+namespace integrators_forces_tests {
 namespace {
 
 // Systems without forces are as they were.
@@ -232,3 +233,4 @@ TEST(Balance, MustSeeEveryPoint) {
 }
 
 }  // namespace
+}  // namespace integrators_forces_tests

@@ -15,6 +15,7 @@
 
 using namespace lagroid;
 
+namespace integrators_formulations_tests {
 namespace {
 
 /// The free rigid body, as a user would write it.
@@ -206,3 +207,4 @@ TEST(AttitudeControl, TheForbiddenAxisIsOneOfSymmetryForEqualWeightsOnly) {
 }
 
 }  // namespace
+}  // namespace integrators_formulations_tests

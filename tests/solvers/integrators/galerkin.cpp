@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace integrators_galerkin_tests {
 namespace {
 
 template <class Sys> FixedStepIntegrator<Sys> make(const Sys& system, const State<typename Sys::GroupoidType>& start) {
@@ -93,3 +94,4 @@ TEST(Galerkin, SpatialMomentumOfTheBodyIsKept) {
 }
 
 }  // namespace
+}  // namespace integrators_galerkin_tests

@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace integrators_long_runs_tests {
 namespace {
 
 class PlateBallLong : public ::testing::TestWithParam<RotationForm> {};
@@ -73,3 +74,4 @@ TEST(RigidBodyLong, MomentumAndEnergyHaveNoTrendOverAMillionSteps) {
 TEST(NonholonomicLong, EnergyAndMomentumOverAHundredThousandSteps) { expect_no_drift(100'000, 1e-12); }
 
 }  // namespace
+}  // namespace integrators_long_runs_tests

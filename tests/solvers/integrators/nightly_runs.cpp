@@ -16,6 +16,7 @@
 
 using namespace lagroid;
 
+namespace integrators_nightly_runs_tests {
 namespace {
 
 TEST(Nightly, MillionsOfSteps) {
@@ -100,3 +101,4 @@ TEST(Nightly, EverySeedFindsTheBestMinimum) {
 }
 
 }  // namespace
+}  // namespace integrators_nightly_runs_tests

@@ -11,6 +11,7 @@
 
 using namespace lagroid;
 
+namespace integrators_principles_tests {
 namespace {
 
 /// The same Lagrangian and the same constraints, the other principle.
@@ -99,3 +100,4 @@ TEST(Principles, AgreeWhereConstraintsAreIntegrable) {
 }
 
 }  // namespace
+}  // namespace integrators_principles_tests

@@ -18,6 +18,7 @@
 
 using namespace lagroid;
 
+namespace integrators_runge_kutta_tests {
 namespace {
 
 static_assert(HasRates<Kepler> && HasRates<RigidBody> && HasRates<HeavyTop> && HasRates<SphericalPendulum>);
@@ -119,3 +120,4 @@ TEST(RungeKutta, NeedsRates) {
 }
 
 }  // namespace
+}  // namespace integrators_runge_kutta_tests

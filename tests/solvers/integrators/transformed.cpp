@@ -16,6 +16,7 @@
 
 using namespace lagroid;
 
+namespace integrators_transformed_tests {
 namespace {
 
 static_assert(AttractiveSystem<Kepler> && !AttractiveSystem<Pendulum>);
@@ -122,3 +123,4 @@ TEST(Transformed, AllocatesNothing) {
 }
 
 }  // namespace
+}  // namespace integrators_transformed_tests

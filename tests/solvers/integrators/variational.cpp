@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace integrators_variational_tests {
 namespace {
 
 /// An oscillator; a straight line is no trajectory of it. The boundary term p (q1 - q0) changes nothing but momenta.
@@ -93,3 +94,4 @@ TEST(BrokenActionPrinciple, VariationsThatLeaveTheConstraintAreFoundOut) {
 }
 
 }  // namespace
+}  // namespace integrators_variational_tests

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::learning_tests {
+namespace lagroid::learning_tests::fields_tests {
 namespace {
 
 VectorXd random_state(int k, unsigned seed) {
@@ -239,4 +239,4 @@ TEST(Starts, OfAPolynomialDifferBySeed) {
 }
 
 }  // namespace
-}  // namespace lagroid::learning_tests
+}  // namespace lagroid::learning_tests::fields_tests

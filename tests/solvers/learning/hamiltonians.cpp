@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::learning_tests {
+namespace lagroid::learning_tests::hamiltonians_tests {
 namespace {
 
 /// A particle on an ellipsoid of revolution.
@@ -494,4 +494,4 @@ TEST(Data, OnAnySpaceIsRefusedWithTheRowNamed) {
 }
 
 }  // namespace
-}  // namespace lagroid::learning_tests
+}  // namespace lagroid::learning_tests::hamiltonians_tests

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::learning_tests {
+namespace lagroid::learning_tests::recovery_tests {
 namespace {
 
 TEST(Recovery, ByPolynomialsIsAsGoodAsTheIntegrator) {
@@ -152,4 +152,4 @@ TEST(Measures, TellTheTruthFromAnother) {
 }
 
 }  // namespace
-}  // namespace lagroid::learning_tests
+}  // namespace lagroid::learning_tests::recovery_tests

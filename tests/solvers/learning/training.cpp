@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid::learning_tests {
+namespace lagroid::learning_tests::training_tests {
 namespace {
 
 TEST(Training, EndsAsItSays) {
@@ -297,4 +297,4 @@ TEST(Pieces, DoNotBeginAtAPointOfWeightZero) {
 }
 
 }  // namespace
-}  // namespace lagroid::learning_tests
+}  // namespace lagroid::learning_tests::training_tests

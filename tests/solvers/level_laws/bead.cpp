@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace level_laws_bead_tests {
 namespace {
 
 /// A bead at a distance r on a turning rod.
@@ -46,3 +47,4 @@ TEST(BrokenLevel, InAnotherBasisIsFoundOut) {
 }
 
 }  // namespace
+}  // namespace level_laws_bead_tests

@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace level_laws_bob_tests {
 namespace {
 
 /// A bob at (distance from the axis, angle, height) on the unit sphere.
@@ -43,3 +44,4 @@ TEST(LevelLaws, OfASphericalPendulum) {
 }
 
 }  // namespace
+}  // namespace level_laws_bob_tests

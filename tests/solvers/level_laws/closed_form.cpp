@@ -10,6 +10,7 @@
 
 using namespace lagroid;
 
+namespace level_laws_closed_form_tests {
 namespace {
 
 template <class Full> using Polar = ReducedSystem<PolarQuotient, Full>;
@@ -86,3 +87,4 @@ TEST(BrokenLevel, InAClosedFormOfAnotherAngleIsFoundOut) {
 }
 
 }  // namespace
+}  // namespace level_laws_closed_form_tests

@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace level_laws_top_tests {
 namespace {
 
 template <class Connection> MomentumLevel<Connection, HeavyTop> level_of_the_top() {
@@ -48,3 +49,4 @@ TEST(BrokenLevel, OfAHastySolverIsFoundOut) {
 }
 
 }  // namespace
+}  // namespace level_laws_top_tests

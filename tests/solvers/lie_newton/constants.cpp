@@ -10,7 +10,7 @@
 #include <iostream>
 #include <random>
 
-namespace lagroid::lie_newton_tests {
+namespace lagroid::lie_newton_tests::constants_tests {
 namespace {
 
 /// Starts at a distance from the solution, on the group or in coordinates, in random directions.
@@ -85,4 +85,4 @@ TEST(LieNewton, ConstantsOfTheTheoremsBoundWhatIterationsShow) {
 }
 
 }  // namespace
-}  // namespace lagroid::lie_newton_tests
+}  // namespace lagroid::lie_newton_tests::constants_tests

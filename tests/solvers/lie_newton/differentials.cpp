@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace lagroid::lie_newton_tests {
+namespace lagroid::lie_newton_tests::differentials_tests {
 namespace {
 
 TEST(LieNewton, EveryDifferentialIsTheExactOneToItsOrder) {
@@ -103,4 +103,4 @@ TEST(LieNewton, ASingularDifferentialIsTyped) {
 }
 
 }  // namespace
-}  // namespace lagroid::lie_newton_tests
+}  // namespace lagroid::lie_newton_tests::differentials_tests

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace lagroid::lie_newton_tests {
+namespace lagroid::lie_newton_tests::fibres_tests {
 namespace {
 
 /// The first example on SO(3), by the fixed-size group.
@@ -94,4 +94,4 @@ TEST(LieNewton, OnASourceFibreOfAGroupoidWithObjects) {
 }
 
 }  // namespace
-}  // namespace lagroid::lie_newton_tests
+}  // namespace lagroid::lie_newton_tests::fibres_tests

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lagroid::lie_newton_tests {
+namespace lagroid::lie_newton_tests::iteration_tests {
 namespace {
 
 TEST(LieNewton, DampingLowersTheResidualOrRefuses) {
@@ -87,4 +87,4 @@ TEST(LieNewton, WhatIsNotANumberNeverConverges) {
 }
 
 }  // namespace
-}  // namespace lagroid::lie_newton_tests
+}  // namespace lagroid::lie_newton_tests::iteration_tests

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::lie_newton_tests {
+namespace lagroid::lie_newton_tests::orders_tests {
 namespace {
 
 double median(std::vector<double> x) {
@@ -122,4 +122,4 @@ TEST(LieNewton, QuadraticDecayRunByRunInExtendedPrecision) {
 }
 
 }  // namespace
-}  // namespace lagroid::lie_newton_tests
+}  // namespace lagroid::lie_newton_tests::orders_tests

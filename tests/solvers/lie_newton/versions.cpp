@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace lagroid::lie_newton_tests {
+namespace lagroid::lie_newton_tests::versions_tests {
 namespace {
 
 TEST(LieNewton, BothVersionsFindTheSameSolution) {
@@ -124,4 +124,4 @@ TEST(LieNewton, Remark31AHomomorphismTakesOneIteration) {
 }
 
 }  // namespace
-}  // namespace lagroid::lie_newton_tests
+}  // namespace lagroid::lie_newton_tests::versions_tests

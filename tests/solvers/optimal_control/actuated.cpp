@@ -12,7 +12,7 @@
 #include <numbers>
 #include <type_traits>
 
-namespace lagroid {
+namespace lagroid::optimal_control_actuated_tests {
 namespace {
 
 using control_tests::expect_laws;
@@ -161,4 +161,4 @@ TEST(ActuatedSystems, SwingABobOnItsRodAtTheCostOfItsAngle) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_actuated_tests

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::optimal_control_arms_and_cats_tests {
 namespace {
 
 using control_tests::expect_laws;
@@ -183,4 +183,4 @@ TEST(RolledBalls, KeepToASpeed) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_arms_and_cats_tests

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lagroid {
+namespace lagroid::optimal_control_attitudes_tests {
 namespace {
 
 using control_tests::expect_laws;
@@ -102,4 +102,4 @@ TEST(ControlledFlows, ACostThatIsWrittenAnewIsTheOneThatIsTaken) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_attitudes_tests

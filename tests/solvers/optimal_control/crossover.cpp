@@ -13,7 +13,7 @@
 
 #include <numbers>
 
-namespace lagroid {
+namespace lagroid::optimal_control_crossover_tests {
 namespace {
 
 ControlTask<DubinsCar> shortest_way() {
@@ -159,4 +159,4 @@ TEST(BrokenControlSolutions, FailTheLawsOfTheirGridsAndResiduals) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_crossover_tests

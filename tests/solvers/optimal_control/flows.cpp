@@ -14,7 +14,7 @@
 #include <cmath>
 #include <random>
 
-namespace lagroid {
+namespace lagroid::optimal_control_flows_tests {
 namespace {
 
 /// A flow of which the transcription knows cost and constraint alone.
@@ -145,4 +145,4 @@ TEST(FlowDerivatives, AreThoseOfValuesBesideACenterOfAttraction) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_flows_tests

@@ -8,7 +8,7 @@
 
 #include <numbers>
 
-namespace lagroid {
+namespace lagroid::optimal_control_lines_and_planes_tests {
 namespace {
 
 using control_tests::expect_laws;
@@ -96,4 +96,4 @@ TEST(ControlOnPairs, DerivativesAndOptimality) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_lines_and_planes_tests

@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::optimal_control_loop_tests {
 namespace {
 
 using States = FlowStates<SatelliteTurn::GroupoidType>;
@@ -180,4 +180,4 @@ TEST(Latencies, ArePercentilesToFivePercent) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_loop_tests

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::optimal_control_phases_tests {
 namespace {
 
 using control_tests::expect_laws;
@@ -360,4 +360,4 @@ TEST(ControlPhases, AConstraintHoldsInItsPhaseAlone) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_phases_tests

@@ -9,7 +9,7 @@
 
 #include <numbers>
 
-namespace lagroid {
+namespace lagroid::optimal_control_poses_tests {
 namespace {
 
 using control_tests::expect_laws;
@@ -179,4 +179,4 @@ TEST(SteeredCars, WithABoundOfTheirSteering) {
 TEST(ControlOnSE2, DerivativesAndOptimality) { expect_laws(dubins({0, 0, 0}, {4, 2, 1}, 1, 5), 20); }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_poses_tests

@@ -13,7 +13,7 @@
 
 #include <random>
 
-namespace lagroid {
+namespace lagroid::optimal_control_solver_tests {
 namespace {
 
 ControlTask<DoubleIntegrator> rest_to_rest() { return {{}, {{0, 0}, {1, 0}}, 1}; }
@@ -215,4 +215,4 @@ TEST(BrokenSolution, FailsTheLawsOfOptimality) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_solver_tests

@@ -17,7 +17,7 @@
 #include <sstream>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::optimal_control_ipopt_derivatives_tests {
 namespace {
 
 using namespace controlled_bodies_tests;
@@ -176,4 +176,4 @@ TEST(BrokenChart, FailsTheTestOfItsDerivatives) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_ipopt_derivatives_tests

@@ -9,7 +9,7 @@
 
 #include <numbers>
 
-namespace lagroid {
+namespace lagroid::optimal_control_ipopt_groups_tests {
 namespace {
 
 using ipopt_tests::expect_agreement;
@@ -65,4 +65,4 @@ TEST(ControlByIpopt, AgreesOnPhases) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_ipopt_groups_tests

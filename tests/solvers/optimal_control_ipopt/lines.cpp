@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-namespace lagroid {
+namespace lagroid::optimal_control_ipopt_lines_tests {
 namespace {
 
 using ipopt_tests::expect_agreement;
@@ -48,4 +48,4 @@ TEST(ControlByIpopt, AgreesOnLinesAndPlanes) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::optimal_control_ipopt_lines_tests

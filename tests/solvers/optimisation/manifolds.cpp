@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid::optimisation::tests {
+namespace lagroid::optimisation::tests::manifolds_tests {
 namespace {
 
 ProductManifold product() {
@@ -262,4 +262,4 @@ TEST(Zeta, IsThatOfTheCurvature) {
 }
 
 }  // namespace
-}  // namespace lagroid::optimisation::tests
+}  // namespace lagroid::optimisation::tests::manifolds_tests

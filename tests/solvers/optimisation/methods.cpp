@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::optimisation::tests {
+namespace lagroid::optimisation::tests::methods_tests {
 namespace {
 
 /// Reference counts of shared/cases/newton-and-htvi.json ("sphere"), A = diag(linspace(0, 1 - 1/kappa, n - 1), 1).
@@ -234,4 +234,4 @@ TEST(Methods, FindTheMinimum) {
 }
 
 }  // namespace
-}  // namespace lagroid::optimisation::tests
+}  // namespace lagroid::optimisation::tests::methods_tests

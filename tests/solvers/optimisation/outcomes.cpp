@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::optimisation::tests {
+namespace lagroid::optimisation::tests::outcomes_tests {
 namespace {
 
 TEST(Procrustes, EachComponentOfTheOrthogonalGroupHasItsMinimum) {
@@ -205,4 +205,4 @@ TEST(Outcomes, OfIllConditionedProblemsAreTyped) {
 }
 
 }  // namespace
-}  // namespace lagroid::optimisation::tests
+}  // namespace lagroid::optimisation::tests::outcomes_tests

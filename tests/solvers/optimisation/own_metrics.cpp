@@ -27,7 +27,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::optimisation::tests {
+namespace lagroid::optimisation::tests::own_metrics_tests {
 namespace {
 
 /// The point of the plane in polar coordinates.
@@ -362,4 +362,4 @@ TEST(EulerLagrange, ConvergesWithALargeLambda) {
 }
 
 }  // namespace
-}  // namespace lagroid::optimisation::tests
+}  // namespace lagroid::optimisation::tests::own_metrics_tests

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::sensitivity_boundary_costs_tests {
 namespace {
 
 constexpr std::size_t steps = 20;
@@ -134,4 +134,4 @@ TEST(CostGradients, RefuseWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_boundary_costs_tests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lagroid {
+namespace lagroid::sensitivity_constrained_tests {
 namespace {
 
 using laws::draw_uniform;
@@ -22,4 +22,4 @@ TEST(SensitivityLaws, HoldWithObjectConstraints) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_constrained_tests

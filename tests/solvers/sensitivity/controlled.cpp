@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::sensitivity_controlled_tests {
 namespace {
 
 using sensitivity_tests::end_of_sizes_held_fixed;
@@ -188,4 +188,4 @@ TEST(ControlledSensitivities, BetweenNodesAreWhatDifferencesTendTo) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_controlled_tests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lagroid {
+namespace lagroid::sensitivity_forced_tests {
 namespace {
 
 using laws::draw_uniform;
@@ -27,4 +27,4 @@ TEST(SensitivityLaws, AForcedStepIsNotSymplectic) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_forced_tests

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace lagroid {
+namespace lagroid::sensitivity_growth_tests {
 namespace {
 
 /// A pendulum in units of so many metres, kilogrammes and seconds.
@@ -108,4 +108,4 @@ TEST(Growth, OfWhatIsAddedCountsBeyondEachStep) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_growth_tests

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lagroid {
+namespace lagroid::sensitivity_laws_tests {
 namespace {
 
 using laws::draw_uniform;
@@ -34,4 +34,4 @@ TEST(SensitivityLaws, HoldOnAGroupoidWithABracket) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_laws_tests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lagroid {
+namespace lagroid::sensitivity_reactions_tests {
 namespace {
 
 using laws::draw_uniform;
@@ -20,4 +20,4 @@ TEST(SensitivityLaws, HoldWithReactions) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_reactions_tests

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::sensitivity_reference_tests {
 namespace {
 
 using Json = nlohmann::json;
@@ -120,4 +120,4 @@ TEST(GradientReference, RigidBody) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_reference_tests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lagroid {
+namespace lagroid::sensitivity_runs_tests {
 namespace {
 
 /// A hard spring, U = k q^4 / 4 + c q^2 / 2, of which c carries no derivative.
@@ -150,4 +150,4 @@ TEST(RunGradients, RefuseWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_runs_tests

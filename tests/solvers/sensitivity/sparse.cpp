@@ -10,7 +10,7 @@
 #include <numeric>
 #include <random>
 
-namespace lagroid {
+namespace lagroid::sensitivity_sparse_tests {
 namespace {
 
 struct Both {
@@ -133,4 +133,4 @@ TEST(Colouring, ColumnsOfOneColourShareNoRow) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_sparse_tests

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::sensitivity_splittings_tests {
 namespace {
 
 constexpr long steps = 50;
@@ -114,4 +114,4 @@ TEST(SplittingSensitivities, RefuseAParameterThatFlowsReadAsAPlainNumber) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_splittings_tests

@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::sensitivity_timed_tests {
 namespace {
 
 using sensitivity_tests::end_of_sizes_held_fixed;
@@ -233,4 +233,4 @@ TEST(TimedSensitivities, RefuseWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::sensitivity_timed_tests

@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace step_arclength_tests {
 namespace {
 
 using Step = ImplicitStep<RotationFibre<>, ExampleField<>>;
@@ -143,3 +144,4 @@ TEST(Arclength, SaysHowFarItCame) {
 }
 
 }  // namespace
+}  // namespace step_arclength_tests

@@ -9,6 +9,7 @@
 
 using namespace lagroid;
 
+namespace step_ceres_on_groups_tests {
 namespace {
 
 template <class G> class CeresOnGroups : public ::testing::Test {};
@@ -21,3 +22,4 @@ TYPED_TEST_SUITE(CeresOnGroups, Groups);
 TYPED_TEST(CeresOnGroups, SolvesTwoThousandStepsAsNewtonDoes) { expect_ceres_to_solve_as_newton<TypeParam>({}); }
 
 }  // namespace
+}  // namespace step_ceres_on_groups_tests

@@ -6,6 +6,7 @@
 
 using namespace lagroid;
 
+namespace step_ceres_on_space_tests {
 namespace {
 
 template <class G> class CeresInSpace : public ::testing::Test {};
@@ -16,3 +17,4 @@ TYPED_TEST_SUITE(CeresInSpace, Groups);
 TYPED_TEST(CeresInSpace, SolvesTwoThousandStepsAsNewtonDoes) { expect_ceres_to_solve_as_newton<TypeParam>({}); }
 
 }  // namespace
+}  // namespace step_ceres_on_space_tests

@@ -25,6 +25,7 @@
 
 using namespace lagroid;
 
+namespace step_ceres_steps_tests {
 namespace {
 
 template <class G> class Manifold : public ::testing::Test {};
@@ -185,3 +186,4 @@ TEST(BrokenSolver, ThatDoesNotGoOnToTheEnd) {
 }
 
 }  // namespace
+}  // namespace step_ceres_steps_tests

@@ -21,6 +21,7 @@
 
 using namespace lagroid;
 
+namespace step_solver_laws_tests {
 namespace {
 
 template <class Sys, class Draw> void expect_solved(const Sys& system, const Draw& draw) {
@@ -125,3 +126,4 @@ TEST(Ceres, MarchesNonholonomicSystems) {
 }
 
 }  // namespace
+}  // namespace step_solver_laws_tests

@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace step_step_parts_tests {
 namespace {
 
 /// Random, with a leading block of zeros (as multipliers make them) and rows of very different sizes.
@@ -277,3 +278,4 @@ TEST(NewtonStep, AKeptMatrixDoesNotSpoilAnUnrelatedStep) {
 }
 
 }  // namespace
+}  // namespace step_step_parts_tests

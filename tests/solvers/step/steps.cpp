@@ -21,6 +21,7 @@
 
 using namespace lagroid;
 
+namespace step_steps_tests {
 namespace {
 
 using G = PlateBall::GroupoidType;
@@ -276,3 +277,4 @@ TEST(FixedStepIntegrator, LargeTurnsAndSmallBalls) {
 }
 
 }  // namespace
+}  // namespace step_steps_tests

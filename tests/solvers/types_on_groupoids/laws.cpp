@@ -5,6 +5,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace types_on_groupoids_laws_tests {
 namespace {
 
 TEST(TypesOnGroupoids, LawsOfAHamiltonianThatIsNotSeparable) {
@@ -19,3 +20,4 @@ TEST(TypesOnGroupoids, LawsOfABody) {
 }
 
 }  // namespace
+}  // namespace types_on_groupoids_laws_tests

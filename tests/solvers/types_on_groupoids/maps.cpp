@@ -7,6 +7,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace types_on_groupoids_maps_tests {
 namespace {
 
 using enum GeneratingType;
@@ -74,3 +75,4 @@ TEST(TypesOnGroupoids, WithoutAMomentumAreNoNumbers) {
 }
 
 }  // namespace
+}  // namespace types_on_groupoids_maps_tests

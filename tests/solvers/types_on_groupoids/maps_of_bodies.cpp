@@ -6,6 +6,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace types_on_groupoids_maps_of_bodies_tests {
 namespace {
 
 constexpr double h = 0.1;
@@ -65,3 +66,4 @@ TEST(TypesOnGroupoids, AreChangedIntoTypeOneAndBack) {
 }
 
 }  // namespace
+}  // namespace types_on_groupoids_maps_of_bodies_tests

@@ -4,6 +4,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace types_on_groupoids_orders_tests {
 namespace {
 
 using enum GeneratingType;
@@ -32,3 +33,4 @@ TEST(TypesOnGroupoids, OrderOnASphereIsTwo) {
 }
 
 }  // namespace
+}  // namespace types_on_groupoids_orders_tests

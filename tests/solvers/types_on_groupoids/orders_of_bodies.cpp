@@ -4,6 +4,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace types_on_groupoids_orders_of_bodies_tests {
 namespace {
 
 using enum GeneratingType;
@@ -31,3 +32,4 @@ TEST(TypesOnGroupoids, OrdersOnTheHeavyTop) {
 }
 
 }  // namespace
+}  // namespace types_on_groupoids_orders_of_bodies_tests

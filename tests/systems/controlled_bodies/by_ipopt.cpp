@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::controlled_bodies_by_ipopt_tests {
 namespace {
 
 using namespace controlled_bodies_tests;
@@ -82,4 +82,4 @@ TEST(ControlledBodiesByIpopt, ABuildWithoutItSaysSo) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::controlled_bodies_by_ipopt_tests

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::controlled_bodies_damping_tests {
 namespace {
 
 using namespace controlled_bodies_tests;
@@ -211,4 +211,4 @@ TEST(BrokenDampedBodies, AnotherDamperMovesOtherwise) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::controlled_bodies_damping_tests

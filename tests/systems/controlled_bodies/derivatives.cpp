@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lagroid {
+namespace lagroid::controlled_bodies_derivatives_tests {
 namespace {
 
 using namespace controlled_bodies_tests;
@@ -143,4 +143,4 @@ TEST(BrokenControlledBodies, AnotherDamperFailsTheLawsOfDerivatives) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::controlled_bodies_derivatives_tests

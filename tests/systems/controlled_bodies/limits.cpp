@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lagroid {
+namespace lagroid::controlled_bodies_limits_tests {
 namespace {
 
 using namespace controlled_bodies_tests;
@@ -124,4 +124,4 @@ TEST(ControlledBodies, ABodyPointsInsideOfACone) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::controlled_bodies_limits_tests

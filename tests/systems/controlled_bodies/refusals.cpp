@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::controlled_bodies_refusals_tests {
 namespace {
 
 using namespace controlled_bodies_tests;
@@ -168,4 +168,4 @@ TEST(ControlledBodies, EndsBeyondTheirLimitsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::controlled_bodies_refusals_tests

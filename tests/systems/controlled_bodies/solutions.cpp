@@ -13,7 +13,7 @@
 #include <numbers>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::controlled_bodies_solutions_tests {
 namespace {
 
 using namespace controlled_bodies_tests;
@@ -138,4 +138,4 @@ TEST(ControlledBodies, AnEndThatIsFreeInPartCostsLess) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::controlled_bodies_solutions_tests

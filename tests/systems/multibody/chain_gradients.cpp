@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::multibody {
+namespace lagroid::multibody::chain_gradients_tests {
 namespace {
 
 template <class S> using Vec3 = Vector<S, 3>;
@@ -184,4 +184,4 @@ TEST(ChainGradients, SeeWhatBeginsToActOnTheWay) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody
+}  // namespace lagroid::multibody::chain_gradients_tests

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace lagroid::multibody_tests {
+namespace lagroid::multibody_tests::composed_tests {
 namespace {
 
 multibody::Options composed(const Composition& composition) {
@@ -183,4 +183,4 @@ TEST(Multibody, ControlledStepsFollowWhatTurns) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody_tests
+}  // namespace lagroid::multibody_tests::composed_tests

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid::multibody {
+namespace lagroid::multibody::controlled_gradients_tests {
 namespace {
 
 template <class S> using Vec3 = Vector<S, 3>;
@@ -213,4 +213,4 @@ TEST(ControlledSceneGradients, RefuseOtherMotions) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody
+}  // namespace lagroid::multibody::controlled_gradients_tests

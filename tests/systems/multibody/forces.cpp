@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace lagroid::multibody_tests {
+namespace lagroid::multibody_tests::forces_tests {
 namespace {
 
 TEST(Multibody, DampingTakesEnergy) {
@@ -204,4 +204,4 @@ TEST(Effects, ForcesAreDerivedFromTheEnergy) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody_tests
+}  // namespace lagroid::multibody_tests::forces_tests

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::multibody {
+namespace lagroid::multibody::gradients_tests {
 namespace {
 
 template <class S> using Vec3 = Vector<S, 3>;
@@ -381,4 +381,4 @@ TEST(SceneGradients, RefusesNumbersByWhichJointsWouldNotHold) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody
+}  // namespace lagroid::multibody::gradients_tests

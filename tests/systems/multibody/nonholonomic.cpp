@@ -10,7 +10,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace lagroid::multibody_tests {
+namespace lagroid::multibody_tests::nonholonomic_tests {
 namespace {
 
 /// What a step that fails has tried is forgotten: the state, and what is told of it.
@@ -136,4 +136,4 @@ TEST(Multibody, AVakonomicUnicycleFollowsAnElastica) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody_tests
+}  // namespace lagroid::multibody_tests::nonholonomic_tests

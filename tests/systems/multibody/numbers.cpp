@@ -16,7 +16,7 @@
 
 #include <cmath>
 
-namespace lagroid::multibody_tests {
+namespace lagroid::multibody_tests::numbers_tests {
 namespace {
 
 TEST(MultibodyNumbers, SphericalPendulum) {
@@ -167,4 +167,4 @@ TEST(Multibody, APrescribedSpinIsKept) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody_tests
+}  // namespace lagroid::multibody_tests::numbers_tests

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace lagroid::multibody_tests {
+namespace lagroid::multibody_tests::rows_tests {
 namespace {
 
 /// Six equal bars in a plane, hinged to a ring, of bodies in space: three of the hinges' equations depend on the
@@ -218,4 +218,4 @@ TEST(Multibody, WhatRestsIsNotSolved) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody_tests
+}  // namespace lagroid::multibody_tests::rows_tests

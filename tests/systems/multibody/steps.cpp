@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace lagroid::multibody_tests {
+namespace lagroid::multibody_tests::steps_tests {
 namespace {
 
 TEST(Multibody, EnergyOfAMachineIsBounded) {
@@ -179,4 +179,4 @@ TEST(Multibody, AStepThatFailsChangesNothing) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody_tests
+}  // namespace lagroid::multibody_tests::steps_tests

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace lagroid::multibody_tests {
+namespace lagroid::multibody_tests::switches_tests {
 namespace {
 
 const Vec weight(0, 0, -9.81);
@@ -230,4 +230,4 @@ TEST(Switches, StepsGoOnAfterParts) {
 }
 
 }  // namespace
-}  // namespace lagroid::multibody_tests
+}  // namespace lagroid::multibody_tests::switches_tests

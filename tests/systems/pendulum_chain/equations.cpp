@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace lagroid::pendulum_chain_tests {
+namespace lagroid::pendulum_chain_tests::equations_tests {
 namespace {
 
 /// F(z).
@@ -200,4 +200,4 @@ TEST(PendulumChain, RefusesChainsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace lagroid::pendulum_chain_tests
+}  // namespace lagroid::pendulum_chain_tests::equations_tests

@@ -14,7 +14,7 @@
 
 #include "../../support/allocation_counter.hpp"
 
-namespace lagroid::pendulum_chain_tests {
+namespace lagroid::pendulum_chain_tests::methods_tests {
 namespace {
 
 TEST(PendulumChain, ControlledStepsReachTheReferences) {
@@ -159,4 +159,4 @@ TEST(PendulumChain, StepsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace lagroid::pendulum_chain_tests
+}  // namespace lagroid::pendulum_chain_tests::methods_tests

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <vector>
 
-namespace lagroid::pendulum_chain_tests {
+namespace lagroid::pendulum_chain_tests::rattle_tests {
 namespace {
 
 TEST(ChainRattle, IsReversible) {
@@ -179,4 +179,4 @@ TEST(ChainRattle, StepsThatAreTooLargeAreTypedAndAdvanceNothing) {
 }
 
 }  // namespace
-}  // namespace lagroid::pendulum_chain_tests
+}  // namespace lagroid::pendulum_chain_tests::rattle_tests

@@ -15,7 +15,7 @@
 #include <fstream>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::poisson_poisson_brackets_tests {
 namespace {
 
 /// Between 0.4 and 1.6: where logarithms are smooth too.
@@ -108,4 +108,4 @@ TEST(PoissonBrackets, SumsOfPartsHaveTheDerivativesOfTheirFormula) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::poisson_poisson_brackets_tests

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::poisson_poisson_integrators_tests {
 namespace {
 
 TEST(PoissonIntegrators, EndWhereItIsRecordedByExtrapolation) {
@@ -148,4 +148,4 @@ TEST(PoissonIntegrators, StepsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::poisson_poisson_integrators_tests

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lagroid {
+namespace lagroid::poisson_poisson_long_runs_tests {
 namespace {
 
 TEST(PoissonLongRuns, CasimirsGoByRoundingAloneAndEnergiesHaveNoTrend) {
@@ -17,4 +17,4 @@ TEST(PoissonLongRuns, CasimirsGoByRoundingAloneAndEnergiesHaveNoTrend) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::poisson_poisson_long_runs_tests

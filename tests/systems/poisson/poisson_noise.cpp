@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::poisson_poisson_noise_tests {
 namespace {
 
 using X3 = Vector<double, 3>;
@@ -300,4 +300,4 @@ TEST(PoissonNoise, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::poisson_poisson_noise_tests

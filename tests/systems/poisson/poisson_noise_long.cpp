@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::poisson_poisson_noise_long_tests {
 namespace {
 
 using X3 = Vector<double, 3>;
@@ -69,4 +69,4 @@ TEST(PoissonNoiseLong, TheThermostatExtrapolatedHasGibbsMeasureWithinThreeStanda
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::poisson_poisson_noise_long_tests

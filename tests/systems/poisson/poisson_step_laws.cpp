@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace lagroid {
+namespace lagroid::poisson_poisson_step_laws_tests {
 namespace {
 
 template <class Sys> laws::PoissonSubject subject_of(const char* name, std::vector<double> start, const char* method) {
@@ -118,4 +118,4 @@ TEST(BrokenPoissonStep, AMethodThatClaimsToKeepTheEnergy) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::poisson_poisson_step_laws_tests

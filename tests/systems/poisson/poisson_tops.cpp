@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-namespace lagroid {
+namespace lagroid::poisson_poisson_tops_tests {
 namespace {
 
 using X6 = Vector<double, 6>;
@@ -172,4 +172,4 @@ TEST(SpinChain, IsTheEquationOfLandauAndLifshitz) {
 }
 
 }  // namespace
-}  // namespace lagroid
+}  // namespace lagroid::poisson_poisson_tops_tests

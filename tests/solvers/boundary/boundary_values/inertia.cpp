@@ -13,6 +13,7 @@
 
 using namespace lagroid;
 
+namespace boundary_values_inertia_tests {
 namespace {
 
 long negative(const Eigen::VectorXd& eigenvalues) {
@@ -88,3 +89,4 @@ TEST(SymmetricFactor, DoesNotHideANaN) {
 }
 
 }  // namespace
+}  // namespace boundary_values_inertia_tests

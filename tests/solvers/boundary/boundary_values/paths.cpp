@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace boundary_values_paths_tests {
 namespace {
 
 TEST(Work, IterationsDoNotGrowWithTheNumberOfArrows) {
@@ -174,3 +175,4 @@ TEST(Continuation, SaysHowFarItCameWhereSolutionsEnd) {
 }
 
 }  // namespace
+}  // namespace boundary_values_paths_tests

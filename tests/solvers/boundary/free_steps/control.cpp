@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace free_steps_control_tests {
 namespace {
 
 using Vector3 = Vector<double, 3>;
@@ -223,3 +224,4 @@ TEST(FreeSteps, EnergyIsTheCostateOfTheEndTime) {
 }
 
 }  // namespace
+}  // namespace free_steps_control_tests

@@ -21,6 +21,7 @@
 
 using namespace lagroid;
 
+namespace free_steps_motions_tests {
 namespace {
 
 TEST(FreeSteps, OfASwingHaveTheSameEnergyOnAllArrows) {
@@ -155,3 +156,4 @@ TEST(PrescribedSteps, AreOfOrderTwoAndTheirMultipliersSmall) {
 }
 
 }  // namespace
+}  // namespace free_steps_motions_tests

@@ -16,6 +16,7 @@
 
 using namespace lagroid;
 
+namespace free_steps_plate_ball_tests {
 namespace {
 
 using Vector2 = Vector<double, 2>;
@@ -198,3 +199,4 @@ TEST(FreeStepsOfThePlateBall, AreThoseOfAnIndependentSolveOfAsManyArrows) {
 }
 
 }  // namespace
+}  // namespace free_steps_plate_ball_tests

@@ -6,6 +6,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace exact_actions_guided_top_tests {
 namespace {
 
 template <class L, int Stages> using LobattoPair = Galerkin<L, Stages, CurveQuadrature::lobatto_pair>;
@@ -42,3 +43,4 @@ TEST(AnyLagrangian, OrdersOfAGuidedTopByLobattosPair) {
 }
 
 }  // namespace
+}  // namespace exact_actions_guided_top_tests

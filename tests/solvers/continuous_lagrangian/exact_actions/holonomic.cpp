@@ -7,6 +7,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace exact_actions_holonomic_tests {
 namespace {
 
 TEST(ExactAction, StepsOfABeadOnASphereAreItsFlow) {
@@ -14,3 +15,4 @@ TEST(ExactAction, StepsOfABeadOnASphereAreItsFlow) {
 }
 
 }  // namespace
+}  // namespace exact_actions_holonomic_tests

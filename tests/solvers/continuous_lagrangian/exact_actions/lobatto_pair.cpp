@@ -7,6 +7,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace exact_actions_lobatto_pair_tests {
 namespace {
 
 template <class L, int Stages> using LobattoPair = Galerkin<L, Stages, CurveQuadrature::lobatto_pair>;
@@ -55,3 +56,4 @@ TEST(AnyLagrangian, LawsOfABeadByLobattosPair) {
 }
 
 }  // namespace
+}  // namespace exact_actions_lobatto_pair_tests

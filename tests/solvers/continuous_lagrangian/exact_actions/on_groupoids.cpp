@@ -9,6 +9,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace exact_actions_on_groupoids_tests {
 namespace {
 
 TEST(ExactAction, StepsOfAFreeBodyAreItsFlow) {
@@ -46,3 +47,4 @@ TEST(ExactAction, OrdersOnAGroupoidOfOnesOwn) {
 }
 
 }  // namespace
+}  // namespace exact_actions_on_groupoids_tests

@@ -8,6 +8,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace exact_actions_orbit_tests {
 namespace {
 
 TEST(ExactAction, StepsOfAnOrbitAreItsFlow) {
@@ -19,3 +20,4 @@ TEST(ExactAction, StepsOfAnOrbitAreItsFlow) {
 }
 
 }  // namespace
+}  // namespace exact_actions_orbit_tests

@@ -7,6 +7,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace exact_actions_top_tests {
 namespace {
 
 TEST(ExactAction, StepsOfAHeavyTopAreItsFlow) {
@@ -14,3 +15,4 @@ TEST(ExactAction, StepsOfAHeavyTopAreItsFlow) {
 }
 
 }  // namespace
+}  // namespace exact_actions_top_tests

@@ -10,6 +10,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace exact_actions_values_tests {
 namespace {
 
 struct Oscillator : ContinuousLagrangian<Pair<1>> {
@@ -80,3 +81,4 @@ TEST(ExactAction, AStepThatBendsTooMuchIsRefused) {
 }
 
 }  // namespace
+}  // namespace exact_actions_values_tests

@@ -4,6 +4,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace hamilton_pontryagin_on_groupoids_tests {
 namespace {
 
 TEST(HamiltonPontryagin, IsDiscreteEulerLagrangeOnAnActionGroupoid) {
@@ -14,3 +15,4 @@ TEST(HamiltonPontryagin, TakesConstraintsOfTheVelocity) {
 }
 
 }  // namespace
+}  // namespace hamilton_pontryagin_on_groupoids_tests

@@ -14,6 +14,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace hamilton_pontryagin_primary_constraint_tests {
 namespace {
 
 /// Predator and prey, (ln y / x x' - ln x / y y') / 2 - H.
@@ -132,3 +133,4 @@ TEST(PrimaryConstraint, WhatItDoesNotBearIsTyped) {
 }
 
 }  // namespace
+}  // namespace hamilton_pontryagin_primary_constraint_tests

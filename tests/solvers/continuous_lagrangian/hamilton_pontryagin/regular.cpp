@@ -7,6 +7,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace hamilton_pontryagin_regular_tests {
 namespace {
 
 TEST(HamiltonPontryagin, IsDiscreteEulerLagrangeOfRegularLagrangians) {
@@ -29,3 +30,4 @@ TEST(HamiltonPontryagin, VelocitiesAndMomentaAreThoseOfTheLegendreTransform) {
 }
 
 }  // namespace
+}  // namespace hamilton_pontryagin_regular_tests

@@ -5,6 +5,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace hamilton_pontryagin_vortices_tests {
 namespace {
 
 TEST(PrimaryConstraint, FourVortices) {
@@ -29,3 +30,4 @@ TEST(PrimaryConstraint, FourVortices) {
 }
 
 }  // namespace
+}  // namespace hamilton_pontryagin_vortices_tests

@@ -5,6 +5,7 @@
 using namespace lagroid;
 using namespace lagroid::subjects;
 
+namespace hamilton_pontryagin_vortices_for_long_tests {
 namespace {
 
 TEST(PrimaryConstraint, FourVorticesForAHundredThousandSteps) {
@@ -15,3 +16,4 @@ TEST(PrimaryConstraint, FourVorticesForAHundredThousandSteps) {
 }
 
 }  // namespace
+}  // namespace hamilton_pontryagin_vortices_for_long_tests

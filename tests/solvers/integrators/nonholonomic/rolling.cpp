@@ -14,6 +14,7 @@
 
 using namespace lagroid;
 
+namespace nonholonomic_rolling_tests {
 namespace {
 
 static_assert(Nonholonomic<RollingBall> && !Variational<RollingBall> && !Forced<RollingBall>);
@@ -172,3 +173,4 @@ TEST(Nonholonomic, MomentumChangeIsFplusLessFminus) {
 }
 
 }  // namespace
+}  // namespace nonholonomic_rolling_tests

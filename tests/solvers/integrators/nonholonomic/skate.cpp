@@ -7,6 +7,7 @@
 
 using namespace lagroid;
 
+namespace nonholonomic_skate_tests {
 namespace {
 
 TEST(Nonholonomic, BesideAnObjectConstraintDoesNoVirtualWork) {
@@ -31,3 +32,4 @@ TEST(BrokenReaction, BesideAnObjectConstraintDoesVirtualWork) {
 }
 
 }  // namespace
+}  // namespace nonholonomic_skate_tests

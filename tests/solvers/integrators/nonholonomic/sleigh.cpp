@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace nonholonomic_sleigh_tests {
 namespace {
 
 static_assert(!HasAnnihilator<ChaplyginSleigh>);
@@ -134,3 +135,4 @@ TEST(BrokenConstraint, ArrowsThatMoveSideways) {
 }
 
 }  // namespace
+}  // namespace nonholonomic_sleigh_tests

@@ -12,6 +12,7 @@
 
 using namespace lagroid;
 
+namespace prescribed_kinds_tests {
 namespace {
 
 template <class Sys>
@@ -148,3 +149,4 @@ TEST(PrescribedKinds, AreSymmetricWhereTheTimeScaleIs) {
 }
 
 }  // namespace
+}  // namespace prescribed_kinds_tests

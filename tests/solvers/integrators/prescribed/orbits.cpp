@@ -17,6 +17,7 @@
 
 using namespace lagroid;
 
+namespace prescribed_orbits_tests {
 namespace {
 
 constexpr double eccentricity = 0.8;
@@ -205,3 +206,4 @@ TEST(Prescribed, AllocateNothing) {
 }
 
 }  // namespace
+}  // namespace prescribed_orbits_tests

@@ -13,7 +13,7 @@
 
 #include "../../../support/allocation_counter.hpp"
 
-namespace lagroid::splitting_tests {
+namespace lagroid::splitting_tests::extrapolated_tests {
 namespace {
 
 template <class Sys> ExtrapolatedSplitting<Sys> extrapolated(Problem<Sys> problem, double tolerance, int nodes = 1) {
@@ -198,4 +198,4 @@ TEST(ExtrapolatedSplitting, AllocatesNothingInAStep) {
 }
 
 }  // namespace
-}  // namespace lagroid::splitting_tests
+}  // namespace lagroid::splitting_tests::extrapolated_tests

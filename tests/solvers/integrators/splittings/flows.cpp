@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lagroid::splitting_tests {
+namespace lagroid::splitting_tests::flows_tests {
 namespace {
 
 static_assert(SplitSystem<Pendulum> && SplitSystem<Kepler> && SplitSystem<RigidBody> && SplitSystem<HeavyTop>);
@@ -146,4 +146,4 @@ TEST(Gradients, AreThoseOfThePotentials) {
 }
 
 }  // namespace
-}  // namespace lagroid::splitting_tests
+}  // namespace lagroid::splitting_tests::flows_tests

@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace lagroid::splitting_tests {
+namespace lagroid::splitting_tests::orders_tests {
 namespace {
 
 double power_sum(const Composition& composition, int k) {
@@ -158,4 +158,4 @@ TEST(Orders, OfACompositionThatIsNotSymmetricIsOdd) {
 }
 
 }  // namespace
-}  // namespace lagroid::splitting_tests
+}  // namespace lagroid::splitting_tests::orders_tests

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace lagroid::splitting_tests {
+namespace lagroid::splitting_tests::properties_tests {
 namespace {
 
 // ---- what steps keep
@@ -191,4 +191,4 @@ TEST(Splittings, DoNotAdvanceIntoASingularity) {
 }
 
 }  // namespace
-}  // namespace lagroid::splitting_tests
+}  // namespace lagroid::splitting_tests::properties_tests
