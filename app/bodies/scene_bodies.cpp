@@ -68,12 +68,12 @@ const KeyOf<NumberArray> position = vector_key("position", "m", "x, y, z of the 
 const KeyOf<Number> pivoted_mass{"mass", {nonnegative}, "kg", "of the body", 0.0};
 const KeyOf<NumberArray> pivot = vector_key("pivot", "m", "x, y, z of the fixed point", Vec::Zero());
 const KeyOf<NumberArray> pivoted_moments{"inertia", {3, positive}, "kg m^2", "three principal moments about the pivot"};
-const KeyOf<NumberArray> centre =
+const KeyOf<NumberArray> to_centre =
     vector_key("centre", "m", "from the pivot to the centre of mass, in the body's frame", Vec::Zero());
 
 const KeyOf<Number> planar_inertia{"inertia", {positive}, "kg m^2", "about the centre of mass"};
 const KeyOf<NumberArray> planar_position{"position", {2}, "m", "x, y of the centre of mass"};
-const KeyOf<Number> angle{"angle", {}, "rad", "by which the body is turned", 0.0};
+const KeyOf<Number> planar_angle{"angle", {}, "rad", "by which the body is turned", 0.0};
 const KeyOf<NumberArray> planar_velocity{"velocity", {2}, "m/s", "of the centre of mass", {{0, 0}}};
 const KeyOf<Number> planar_turning{"angular_velocity", {}, "rad/s", "of the body", 0.0};
 
@@ -176,7 +176,7 @@ constexpr auto read_pivoted = []<class S>(BasicSceneBodies<S>& bodies, const Sec
   b.mass = bodies.number(table, pivoted_mass);
   b.inertia = read_moments(bodies, table, pivoted_moments);
   b.place = bodies.vector(table, pivot);
-  b.to_centre = bodies.vector(table, centre);
+  b.to_centre = bodies.vector(table, to_centre);
   for (int i = 0; i < 3; ++i) {
     const Vector<S, 3>& c = b.to_centre;
     const double least = value_of(b.mass * (c.squaredNorm() - c(i) * c(i)));
@@ -204,7 +204,7 @@ constexpr auto read_planar = []<class S>(BasicSceneBodies<S>& bodies, const Sect
   const S inertia = bodies.number(table, planar_inertia);
   b.inertia = {S(0), S(0), inertia};
   const std::vector<S> at = bodies.numbers(table, planar_position);
-  b.angle = bodies.number(table, angle);
+  b.angle = bodies.number(table, planar_angle);
   const std::vector<S> v = bodies.numbers(table, planar_velocity);
   b.place = {at[0], at[1], S(0)};
   b.attitude = SO3::exp(Vector<S, 3>(S(0), S(0), b.angle));
@@ -402,12 +402,12 @@ const std::vector<SceneKind>& body_kinds() {
       {"pivoted",
        "turns about a fixed point",
        read_pivoted,
-       {name_key, pivoted_moments, pivot, pivoted_mass, centre, attitude, angular_velocity},
+       {name_key, pivoted_moments, pivot, pivoted_mass, to_centre, attitude, angular_velocity},
        false},
       {"planar",
        "moves in the plane of x and y",
        read_planar,
-       {name_key, mass, planar_inertia, planar_position, angle, planar_velocity, planar_turning},
+       {name_key, mass, planar_inertia, planar_position, planar_angle, planar_velocity, planar_turning},
        false},
       {"chain",
        "point masses on massless rods, NAME.1, NAME.2, ...",

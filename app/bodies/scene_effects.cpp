@@ -39,7 +39,8 @@ const KeyOf<Number> torsion_stiffness{
     "stiffness", {nonnegative}, "N m", "k of the energy k (1 - cos angle), the angle from that at the start"};
 const KeyOf<NumberArray> torsion_direction{
     "direction", {3}, "", "in space at the start, fixed in both bodies", {}, "of planar bodies none"};
-const KeyOf<Number> damping{"damping", {damping_rule}, "N s/m", "force over the rate at which the distance changes"};
+const KeyOf<Number> distance_damping{
+    "damping", {damping_rule}, "N s/m", "force over the rate at which the distance changes"};
 const KeyOf<Number> motion_drag{"motion", {nonnegative}, "kg/s", "force over velocity of the centre", 0.0};
 const KeyOf<Number> turning_drag{"turning", {nonnegative}, "N m s", "torque over angular velocity", 0.0};
 const KeyOf<NumberArray> acts_at = vector_key("at", "m", "where it acts, in the body's frame", Vec::Zero());
@@ -213,8 +214,8 @@ constexpr auto read_damper = []<class S>(BasicSceneBodies<S>& bodies, const Sect
   const auto ends = bodies.ends(table);
   if ((ends[1].place - ends[0].place).norm() == S(0))
     table.fail("points", "the ends of the damper meet at the start: its force has no direction");
-  bodies.scene.add(
-      multibody::Damper<multibody::BasicLength<S>, S>{{{ends[0].site, ends[1].site}}, bodies.number(table, damping)});
+  bodies.scene.add(multibody::Damper<multibody::BasicLength<S>, S>{{{ends[0].site, ends[1].site}},
+                                                                   bodies.number(table, distance_damping)});
   bodies.lines.push_back({ends[0], ends[1], 0.004});
   bodies.dissipates = true;
 };
@@ -304,7 +305,7 @@ constexpr auto read_motor = []<class S>(BasicSceneBodies<S>& bodies, const Secti
 
 const std::vector<SceneKind>& effect_kinds() {
   const std::vector<Key> ends = end_keys();
-  const Key between = ends.front();
+  const Key between_bodies = ends.front();
   const auto tie = [&](const Key& more, const std::vector<Key>& last = {}) {
     std::vector<Key> keys = ends;
     keys.push_back(more);
@@ -316,9 +317,12 @@ const std::vector<SceneKind>& effect_kinds() {
       {"central_gravity", "of a centre that rests", read_central, {strength, centre, chosen_bodies}},
       {"mutual_gravity", "of the bodies on each other", read_mutual, {gravitation, softening, chosen_bodies}},
       {"spring", "between two points", read_spring, tie(stiffness, {rest_length})},
-      {"torsion_spring", "between two bodies that turn", read_torsion, {between, torsion_direction, torsion_stiffness}},
+      {"torsion_spring",
+       "between two bodies that turn",
+       read_torsion,
+       {between_bodies, torsion_direction, torsion_stiffness}},
       {"drag", "of a medium that rests", read_drag, {motion_drag, turning_drag, chosen_bodies}, false},
-      {"damper", "between two points that do not meet", read_damper, tie(damping)},
+      {"damper", "between two points that do not meet", read_damper, tie(distance_damping)},
       {"control_cost",
        "counts the kinetic terms, summed over the steps: a column, and a line of the report",
        read_cost,
@@ -326,7 +330,7 @@ const std::vector<SceneKind>& effect_kinds() {
        false},
       {"force", "on a point of a body", read_force, {body_key, acts_at, force_key, drive_rate, phase}},
       {"torque", "on a body", read_torque, {body_key, torque_key}},
-      {"motor", "between two bodies that turn", read_motor, {between, motor_torque, drive_rate, phase}},
+      {"motor", "between two bodies that turn", read_motor, {between_bodies, motor_torque, drive_rate, phase}},
       {"charges", "of the bodies on each other", read_charges, {any_charges, coulomb, softening, chosen_bodies}},
       {"magnetic_field",
        "a uniform one; point masses alone",

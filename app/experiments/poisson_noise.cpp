@@ -12,7 +12,7 @@ namespace lagroid::app {
 namespace {
 
 using X3 = Vector<double, 3>;
-const X3 start{0.8, 0.6, 1.1};
+const X3 start_of_top{0.8, 0.6, 1.1};
 
 NoiseRow row(std::string what, double promised, const Estimate& found) {
   return {std::move(what), promised, found.value, found.error};
@@ -21,12 +21,13 @@ NoiseRow row(std::string what, double promised, const Estimate& found) {
 /// How far |M| goes from where it was, over so many steps.
 double drift_of_size(double temperature, long steps) {
   const auto motion = make_poisson_integrator(
-      EulerTop{}, start, {.step = 0.05, .noise = {.strength = {0.5, 0.5, 0.5}, .seed = 1, .temperature = temperature}});
+      EulerTop{}, start_of_top,
+      {.step = 0.05, .noise = {.strength = {0.5, 0.5, 0.5}, .seed = 1, .temperature = temperature}});
   double largest = 0;
   for (long k = 0; k < steps; ++k) {
     if (!motion->advance().converged()) throw std::runtime_error("a step with noise did not converge");
     const std::vector<double> m = motion->point();
-    largest = std::max(largest, std::abs(X3(m[0], m[1], m[2]).norm() - start.norm()));
+    largest = std::max(largest, std::abs(X3(m[0], m[1], m[2]).norm() - start_of_top.norm()));
   }
   return largest;
 }
@@ -40,7 +41,7 @@ std::vector<Estimate> thermostat_means(double temperature, int paths,
     std::vector<std::vector<double>> means(asked.size());
     for (int path = 0; path < paths; ++path) {
       const auto motion = make_poisson_integrator(
-          EulerTop{}, start,
+          EulerTop{}, start_of_top,
           {.step = h,
            .noise = {.strength = {1, 1, 1}, .seed = seed, .path = std::uint32_t(path), .temperature = temperature}});
       std::vector<double> sums(asked.size(), 0);
@@ -85,8 +86,10 @@ std::vector<NoiseRow> run_noise_study(int paths, const std::function<void(long, 
   const auto energy = [&](const auto& m) { return top.hamiltonian(X3(m[0], m[1], m[2])); };
   const auto third = [](const auto& m) { return m[2] * m[2]; };
   const auto means = thermostat_means(temperature, std::max(10, paths / 2), {energy, third});
-  rows.push_back(row("mean energy of the thermostat", gibbs_mean(top, start.norm(), temperature, energy), means[0]));
-  rows.push_back(row("mean M3^2 of the thermostat", gibbs_mean(top, start.norm(), temperature, third), means[1]));
+  rows.push_back(
+      row("mean energy of the thermostat", gibbs_mean(top, start_of_top.norm(), temperature, energy), means[0]));
+  rows.push_back(
+      row("mean M3^2 of the thermostat", gibbs_mean(top, start_of_top.norm(), temperature, third), means[1]));
   report(3, parts);
   return rows;
 }

@@ -21,7 +21,7 @@ namespace {
 namespace odeint = boost::numeric::odeint;
 
 using Numbers = std::array<double, 2>;
-constexpr Numbers start{2, 0.5};
+constexpr Numbers start_of_cycle{2, 0.5};
 constexpr double period = 6.8170540474472894;  // from the start back to it, by Taylor series in long double
 constexpr double wanted = 1e-6;
 
@@ -45,19 +45,20 @@ Run ours(const std::string& method, const Composition& composition, double toler
                                .step = double(periods) * period / double(count),
                                .composition = composition,
                                .tolerance = tolerance};
-  return {tolerance > 0 ? fmt::format("tolerance {:.0e}", tolerance) : fmt::format("{} steps a period", steps_a_period),
-          [=] {
-            const auto motion = make_poisson_integrator(LotkaVolterra{}, {start[0], start[1]}, options);
-            for (long k = 0; k < count; ++k)
-              if (!motion->advance().converged()) return Numbers{NAN, NAN};
-            const std::vector<double> x = motion->point();
-            return Numbers{x[0], x[1]};
-          }};
+  return {
+      tolerance > 0 ? fmt::format("tolerance {:.0e}", tolerance) : fmt::format("{} steps a period", steps_a_period),
+      [=] {
+        const auto motion = make_poisson_integrator(LotkaVolterra{}, {start_of_cycle[0], start_of_cycle[1]}, options);
+        for (long k = 0; k < count; ++k)
+          if (!motion->advance().converged()) return Numbers{NAN, NAN};
+        const std::vector<double> x = motion->point();
+        return Numbers{x[0], x[1]};
+      }};
 }
 
 template <class Way> Run theirs(const std::function<Way(double tolerance)>& make, double tolerance, long periods) {
   return {fmt::format("tolerance {:.0e}", tolerance), [=] {
-            Numbers x = start;
+            Numbers x = start_of_cycle;
             odeint::integrate_adaptive(make(tolerance), rate, x, 0.0, double(periods) * period, 0.1);
             return x;
           }};
@@ -72,7 +73,7 @@ PeriodsRow first_within(std::string library, std::string method, const std::vect
       const double begun = processor_time();
       const Numbers end = run.end();
       seconds = std::min(seconds, processor_time() - begun);
-      error = std::hypot(end[0] - start[0], end[1] - start[1]);
+      error = std::hypot(end[0] - start_of_cycle[0], end[1] - start_of_cycle[1]);
       if (!(error <= wanted)) break;
     }
     if (error <= wanted) return {std::move(library), std::move(method), run.setting, error, seconds};
@@ -121,7 +122,7 @@ std::vector<PeriodsRow> run_periods(long periods) {
   for (double steps = 60; steps < 1000; steps *= std::sqrt(std::sqrt(2.0))) {
     const long count = std::lround(steps) * periods;
     equal.push_back({fmt::format("{} steps a period", std::lround(steps)), [=] {
-                       Numbers x = start;
+                       Numbers x = start_of_cycle;
                        Fehlberg way;
                        for (long k = 0; k < count; ++k)
                          way.do_step(rate, x, 0.0, double(periods) * period / double(count));

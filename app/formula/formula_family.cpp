@@ -15,7 +15,7 @@ struct Word {
   std::string_view word;
   const char* about;
 };
-constexpr std::array words{
+constexpr std::array formula_words{
     Word{keys::lagrangian, "any l(q, q') on R^n, written in the scene, with constraints, forces and symmetries"},
     Word{keys::hamiltonian, "any H(q, p) on T*R^n, written in the scene, with constraints and symmetries"}};
 
@@ -32,18 +32,18 @@ class Formulas final : public SceneFamily {
   std::vector<Use> uses(const Section& scene) const override { return uses_of_formula(scene); }
   std::vector<ListedSystem> systems() const override {
     std::vector<ListedSystem> all;
-    for (const Word& each : words)
+    for (const Word& each : formula_words)
       all.push_back({std::string(each.word), each.about, "pair groupoid of R^n", {}, {}, {}});
     return all;
   }
   std::vector<std::string> names() const override {
     std::vector<std::string> all;
-    for (const Word& each : words) all.emplace_back(each.word);
+    for (const Word& each : formula_words) all.emplace_back(each.word);
     return all;
   }
   std::vector<SceneKeys> keys_of_scenes() const override {
     std::vector<SceneKeys> all;
-    for (const auto& [word, about] : words) {
+    for (const auto& [word, about] : formula_words) {
       const std::string name(word);
       Table table{
           {KeyOf<OneOf>{std::string(keys::system), {{name}}, "", about},

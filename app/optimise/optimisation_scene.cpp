@@ -19,7 +19,7 @@ namespace {
 
 using optimisation::Instance, optimisation::Point, optimisation::Stopping;
 
-const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of a random start", 1};
+const KeyOf<Whole> start_seed_key{"seed", {0, 4294967295}, "", "of a random start", 1};
 const KeyOf<Text> file_key{
     "file", {}, "", "the name of a file; without it the start is random, or the first point of a mean"};
 const KeyOf<Flag> nearest{"nearest", {}, "", "true: the point of the manifold that is nearest to the file's", false};
@@ -51,9 +51,9 @@ const KeyOf<Flag> reference_key{
 /// Start: a file, or else the problem's, or else a random point; of O(n), in the component that is asked for.
 Point read_start(const Section& scene, const Instance& instance, const std::filesystem::path& folder) {
   const Section start = scene.section_or_empty("start");
-  const auto seed = unsigned(read_key(start, seed_key));
-  if (instance.start && start.has(seed_key.name))
-    start.fail(seed_key.name, "a mean starts from its first point, or from a file");
+  const auto seed = unsigned(read_key(start, start_seed_key));
+  if (instance.start && start.has(start_seed_key.name))
+    start.fail(start_seed_key.name, "a mean starts from its first point, or from a file");
   Point x;
   if (start.has("file")) {
     Eigen::MatrixXd matrix;
@@ -101,11 +101,12 @@ Stopping read_stopping(const Section& scene) {
 }  // namespace
 
 Table optimisation_table() {
-  Table table{{optional_table("method", optimisers_table(), "by which it is minimised"),
-               optional_table("start", {{component_key, seed_key}, {{{file_key, nearest}}, {}}}, "where it begins"),
-               optional_table("stop", {{relative_gradient, gradient, gap_key, value, iterations, seconds, patience}},
-                              "when it ends"),
-               reference_key}};
+  Table table{
+      {optional_table("method", optimisers_table(), "by which it is minimised"),
+       optional_table("start", {{component_key, start_seed_key}, {{{file_key, nearest}}, {}}}, "where it begins"),
+       optional_table("stop", {{relative_gradient, gradient, gap_key, value, iterations, seconds, patience}},
+                      "when it ends"),
+       reference_key}};
   for (const auto& entry : problems()) {
     Table kind{
         {KeyOf<OneOf>{std::string(keys::optimisation), {{std::string(entry.name)}}, "", std::string(entry.summary)},

@@ -24,13 +24,13 @@ const std::string gaussian = "gaussian";
 KeyOf<OneOf> random_key(std::vector<std::string> words) {
   return {"random", {std::move(words)}, "", "how it is drawn"};
 }
-const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of what is drawn", 1};
+const KeyOf<Whole> drawn_seed_key{"seed", {0, 4294967295}, "", "of what is drawn", 1};
 const KeyOf<Whole> rows_key{"rows", {1, 20000}, "", "how many"};
 const KeyOf<Whole> columns_key{"columns", {1, 20000}, "", "how many"};
 
 /// A file, or a table that says how a matrix is drawn.
 KeyOf<Either> matrix_key(std::string name, std::string meaning) {
-  const Table drawn{{seed_key, rows_key},
+  const Table drawn{{drawn_seed_key, rows_key},
                     {Table{{random_key({symmetric})}}, Table{{random_key({gaussian}), columns_key}}}};
   return {std::move(name), {{{Text{}}, {drawn}}}, "", std::move(meaning)};
 }
@@ -51,7 +51,7 @@ AnyMatrix read_data(const Section& scene, const KeyOf<Either>& key, const fs::pa
   if (data.is_table(key.name)) {
     const Section table = data.section(key.name, "a random matrix");
     const bool is_symmetric = read_key(table, random_key({symmetric, gaussian})) == symmetric;
-    const auto seed = unsigned(read_key(table, seed_key));
+    const auto seed = unsigned(read_key(table, drawn_seed_key));
     const long size = read_key(table, rows_key);
     if (is_symmetric) return optimisation::random_symmetric(size, seed);
     return optimisation::random_matrix(size, read_key(table, columns_key), seed);

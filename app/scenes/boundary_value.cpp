@@ -38,13 +38,14 @@ const KeyOf<OneOf> stationary_kind{"stationary_kind",
                                    "`minima` of optimal control, else `stationary`"};
 /// Its name until 0.3, which goes with 0.4.
 constexpr const char* seek = "seek";
-const KeyOf<Whole> path{"path",
-                        {0, 100000},
-                        "",
-                        "which of the stationary paths is the result, counted from the cheapest; 0: the cheapest of "
-                        "the `stationary_kind`",
-                        0L};
-const KeyOf<Number> tolerance{
+const KeyOf<Whole> path_key{
+    "path",
+    {0, 100000},
+    "",
+    "which of the stationary paths is the result, counted from the cheapest; 0: the cheapest of "
+    "the `stationary_kind`",
+    0L};
+const KeyOf<Number> boundary_tolerance{
     "tolerance", {positive}, "", "on the scaled residual of the boundary-value equations", BoundaryOptions().tolerance};
 const KeyOf<Whole> max_iterations{"max_iterations", {1, 1000000}, "", "of a start", BoundaryOptions().max_iterations};
 
@@ -77,7 +78,7 @@ Table boundary_time_table(const std::vector<std::string>& modes, bool depends_on
   return table;
 }
 Table boundary_solver_table() {
-  return {{method(), stationary_kind, path, starts, seed, amplitude, tolerance, max_iterations}};
+  return {{method(), stationary_kind, path_key, starts, seed, amplitude, boundary_tolerance, max_iterations}};
 }
 Table continuation_table() { return {{parameter, from, steps}}; }
 
@@ -99,10 +100,10 @@ BoundaryChoice read_boundary_solver(const Section& solver) {
   }
   if (solver.has(kind.name))
     choice.stationary_kind = read_key(solver, kind) == minima ? StationaryKind::minima : StationaryKind::stationary;
-  choice.path = std::size_t(read_key(solver, path));
+  choice.path = std::size_t(read_key(solver, path_key));
   choice.multistart = read_multistart(solver);
   choice.multistart.amplitude = read_key(solver, amplitude);
-  choice.options.tolerance = read_key(solver, tolerance);
+  choice.options.tolerance = read_key(solver, boundary_tolerance);
   choice.options.max_iterations = int(read_key(solver, max_iterations));
   return choice;
 }

@@ -141,12 +141,12 @@ std::string listing(const Experiment& experiment, bool json) {
   if (json) {
     nlohmann::ordered_json out = nlohmann::ordered_json::array();
     for (const Method& m : experiment.methods)
-      out.push_back({{"name", m.name}, {"order", m.order}, {"time", time_keys(m, "")}});
+      out.push_back({{"name", m.name}, {"order", m.order}, {"time", lagroid::time_keys(m, "")}});
     return out.dump(2) + "\n";
   }
   std::string out = fmt::format("{}: methods, and what [time] holds for them\n", experiment.name);
   for (const Method& m : experiment.methods)
-    out += fmt::format("  {:<28} order {:<3} {}\n", m.name, m.order, time_keys(m, ""));
+    out += fmt::format("  {:<28} order {:<3} {}\n", m.name, m.order, lagroid::time_keys(m, ""));
   return out;
 }
 

@@ -27,7 +27,7 @@ const std::vector<const char*> sweep_files{"sweep.h5", "members.csv", "summary.j
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::size_t most_cells_in_csv = 4'000'000;
 constexpr long most_points_in_picture = 1'000'000;
@@ -235,9 +235,9 @@ std::string sweep_text(const SweepScene& sweep, const SweepResult& result) {
   return out;
 }
 
-Json sweep_json(const SweepScene& sweep, const SweepResult& result) {
+OrderedJson sweep_json(const SweepScene& sweep, const SweepResult& result) {
   const SweepPart& members = result.members;
-  Json out;
+  OrderedJson out;
   out["status"] = result.failed() == 0 ? "converged" : "members_failed";
   if (result.failed() > 0) out["message"] = fmt::format("{} of {} members failed", result.failed(), members.count());
   out["members"] = members.count();
@@ -246,13 +246,13 @@ Json sweep_json(const SweepScene& sweep, const SweepResult& result) {
   out["design"] = {{"kind", sweep.design.kind}, {"keys", sweep.design.columns()}};
   out["engine"] = result.engine;
   out["notes"] = sweep.notes;
-  Json failures = Json::array();
+  OrderedJson failures = OrderedJson::array();
   for (const auto& [member, message] : members.messages()) {
     if (failures.size() == most_failures_told) break;
     failures.push_back({{"member", member}, {"status", members.status()[std::size_t(member)]}, {"message", message}});
   }
   out["failures"] = failures;
-  Json columns = Json::object();
+  OrderedJson columns = OrderedJson::object();
   for (const Column& column : members.columns())
     if (const Range range = range_of(column.values); range.count > 0)
       columns[column.name] = {{"least", range.least}, {"mean", range.mean}, {"largest", range.largest}};

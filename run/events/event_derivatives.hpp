@@ -42,7 +42,7 @@ struct EventSensitivities {
     Eigen::MatrixXd observed_by_parameters;
   };
   std::vector<Happened> happened;
-  std::vector<std::string> notes;  ///< of functions that are undefined, jump, or are zero at the start
+  std::vector<std::string> notes;  ///< of functions that are undefined, jump, only touch zero, or are zero at the start
   long steps = 0;                  ///< that were made whole
   bool is_stopped = false;         ///< by an event, which is the last that happened
   double growth = 1;               ///< the largest factor by which directions of the start grew on the way

@@ -123,6 +123,7 @@ template <DiscreteSystem Sys> class EventPropagation {
       if (!event.function) throw std::invalid_argument("event \"" + event.name + "\": it has no function");
       watches_.emplace_back(Event{.name = event.name, .direction = event.direction, .tolerance = event.tolerance});
       happened_.push_back(0);
+      touched_.push_back(0);
     }
   }
   EventPropagation(const EventPropagation&) = delete;  // derivatives know members by their places
@@ -135,9 +136,13 @@ template <DiscreteSystem Sys> class EventPropagation {
     if (observed_node_ == 0) observe_end();
     for (long k = 0; k < steps && !is_over_; ++k) advance(k + 1);
     if (out_.converged()) finish();
-    for (std::size_t i = 0; i < events_.size(); ++i)
-      for (const std::string& note : watches_[i].notes())
-        out_.notes.push_back("event \"" + events_[i].name + "\": " + note);
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      const auto note = [&](const std::string& what) {
+        out_.notes.push_back("event \"" + events_[i].name + "\": " + what);
+      };
+      for (const std::string& each : watches_[i].notes()) note(each);
+      if (touched_[i] > 0) note(words_of_touches(touched_[i]));
+    }
     return std::move(out_);
   }
 
@@ -254,7 +259,11 @@ template <DiscreteSystem Sys> class EventPropagation {
     std::vector<Found> found;
     for (const std::size_t i : suspects)
       for (const FoundInStep& each : watches_[i].find([&](double share) { return value_at(i, cut(share)); }))
-        found.push_back({i, each.share, each.passing});
+        if (each.passing == Passing::touching && !decides(events_[i])) {
+          ++touched_[i];
+        } else {
+          found.push_back({i, each.share, each.passing});
+        }
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.share < b.share; });
     for (std::size_t k = 0; k < found.size() && !is_over_; ++k) {
       if (k + 1 < found.size() && found[k + 1].share - found[k].share <= event_limits::together)
@@ -374,6 +383,7 @@ template <DiscreteSystem Sys> class EventPropagation {
   Point base_;                  ///< from which the rest of the step is made
   std::vector<FunctionWatch> watches_;
   std::vector<long> happened_;
+  std::vector<long> touched_;  ///< by events that only record
   EventSensitivities out_;
   int kicks_ = 0;                   ///< in this step
   bool is_kicked_at_node_ = false;  ///< and its rest is to be made with the next step

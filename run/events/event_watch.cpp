@@ -387,8 +387,7 @@ void EventWatch::report(RunResult& result) const {
                            ? "kicked"
                            : "changed",
                        watch.changes));
-    if (watched.touches > 0)
-      note(fmt::format("its function came to zero {} times without passing it; not counted", watched.touches));
+    if (watched.touches > 0) note(words_of_touches(watched.touches));
   }
 }
 

@@ -14,6 +14,10 @@ constexpr double tiny = std::numeric_limits<double>::min();
 
 }  // namespace
 
+std::string words_of_touches(long touches) {
+  return fmt::format("its function came to zero {} times without passing it; not counted", touches);
+}
+
 void FunctionWatch::see(double value, double time) {
   time_ = time;
   now_ = value;

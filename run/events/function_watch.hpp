@@ -43,6 +43,9 @@ inline constexpr double indistinguishable = 1e-11;
 /// More changes than these in one step follow each other without end.
 inline constexpr int most_changes_in_step = 100;
 
+/// What is said of a function that came to zero so often without passing it.
+std::string words_of_touches(long touches);
+
 class FunctionWatch {
  public:
   explicit FunctionWatch(const Event& event)

@@ -30,6 +30,7 @@ MotionThroughEvents::MotionThroughEvents(std::unique_ptr<CuttableMotion> motion,
     : motion_(std::move(motion)),
       events_(std::move(events)),
       happened_(events_.size(), 0),
+      touched_(events_.size(), 0),
       stays_at_start_(events_.size(), 0) {
   for (const ObservedEvent& event : events_) {
     if (!event.function) throw std::invalid_argument(fmt::format("event \"{}\": it has no function", event.name));
@@ -162,6 +163,10 @@ void MotionThroughEvents::take(const std::vector<Found>& found, double length) {
       const Found& each = found[last++];
       const ObservedEvent& event = events_[each.event];
       piece.duration = each.share * length;
+      if (each.passing == Passing::touching && !event.decides()) {
+        ++touched_[each.event];
+        continue;
+      }
       if (each.passing == Passing::touching) {  // which changes nothing
         pieces_.push_back({.duration = piece.duration, .events = {each.event}, .touches = true});
         continue;

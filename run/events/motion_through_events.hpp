@@ -135,6 +135,7 @@ class MotionThroughEvents final : public LinearisedMotion {
   std::vector<ObservedEvent> events_;
   std::vector<FunctionWatch> watches_;
   std::vector<long> happened_;
+  std::vector<long> touched_;  ///< by events that only record
   std::vector<char> stays_at_start_;
   long steps_ = 0;
   bool is_over_ = false;  ///< an event has ended the run

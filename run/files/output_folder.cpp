@@ -75,20 +75,20 @@ std::string difference(const std::string& name) {
   return "of another " + name;
 }
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json mark_of(OutputKind kind, const OutputSource& source) {
-  Json mark{{"kind", description(kind).name}, {"of", Json::object()}};
+OrderedJson mark_of(OutputKind kind, const OutputSource& source) {
+  OrderedJson mark{{"kind", description(kind).name}, {"of", OrderedJson::object()}};
   for (const auto& [name, text] : source) mark["of"][name] = sum_of(text);
   return mark;
 }
 
 /// The mark of a folder; null where there is none, or none that can be read.
-Json read_mark(const fs::path& folder) {
-  const Json mark = read_json(contents(folder / mark_file).value_or("")).value_or(Json());
+OrderedJson read_mark(const fs::path& folder) {
+  const OrderedJson mark = read_json(contents(folder / mark_file).value_or("")).value_or(OrderedJson());
   const bool whole = mark.is_object() && mark.contains("kind") && mark["kind"].is_string() && mark.contains("of") &&
                      mark["of"].is_object();
-  return whole ? mark : Json();
+  return whole ? mark : OrderedJson();
 }
 
 /// Removes the stagings of runs that were killed: those of processes that are no more.
@@ -244,7 +244,7 @@ void OutputFolder::refuse_others(const std::optional<OutputSource>& source) {
     throw FolderRefused(fmt::format("{}: it holds {}{}; choose another folder, or remove this one", folder_.string(),
                                     there.told, more));
   };
-  const Json mark = read_mark(folder_);
+  const OrderedJson mark = read_mark(folder_);
   if (std::error_code ignored; kind_ != OutputKind::data && mark.is_null() && fs::exists(folder_ / mark_file, ignored))
     throw FolderRefused(
         fmt::format("{}: {}, which says what the folder holds, is damaged; choose another folder, or remove this one",
@@ -263,7 +263,7 @@ void OutputFolder::refuse_others(const std::optional<OutputSource>& source) {
                                     sign_of(folder_, *held), description(kind_).told));
   if (held->kind != kind_) refuse(*held, fmt::format(" ({}), whose files would be lost", sign_of(folder_, *held)));
   if (!source) return;
-  const Json ours = mark_of(kind_, *source)["of"];
+  const OrderedJson ours = mark_of(kind_, *source)["of"];
   for (const auto& [name, sum] : ours.items())
     if (!mark["of"].contains(name) || mark["of"][name] != sum) refuse(*held, " " + difference(name));
 }

@@ -12,13 +12,13 @@ namespace lagroid {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// JSON has no infinity.
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+OrderedJson number(double x) { return std::isfinite(x) ? OrderedJson(x) : OrderedJson(nullptr); }
 
-Json json(const laws::LawReport& suite) {
-  Json laws = Json::array();
+OrderedJson json(const laws::LawReport& suite) {
+  OrderedJson laws = OrderedJson::array();
   for (const auto& law : suite.laws) {
     laws.push_back({{"law", law.name},
                     {"samples", law.samples},
@@ -85,20 +85,21 @@ std::string text_certificate(const Certificate& c) {
 }
 
 std::string json_certificate(const Certificate& c) {
-  Json suites = Json::array();
+  OrderedJson suites = OrderedJson::array();
   for (const auto& suite : c.suites) suites.push_back(json(suite));
-  Json symmetries = Json::array();
+  OrderedJson symmetries = OrderedJson::array();
   for (const auto& s : c.symmetries)
     symmetries.push_back({{"name", s.name}, {"kind", s.kind}, {"defect", number(s.defect)}});
-  Json reductions = Json::array();
+  OrderedJson reductions = OrderedJson::array();
   for (const auto& r : c.reductions) {
     reductions.push_back(
         {{"name", r.name}, {"groupoid", r.groupoid}, {"defect", number(r.defect)}, {"descends", r.why_not.empty()}});
     if (!r.why_not.empty()) reductions.back()["message"] = r.why_not;
   }
-  Json out{{"system", c.system},       {"groupoid", c.groupoid}, {"status", c.status()}, {"states", c.states},
-           {"samples", c.samples},     {"seed", c.seed},         {"seconds", c.seconds}, {"symmetries", symmetries},
-           {"reductions", reductions}, {"suites", suites}};
+  OrderedJson out{{"system", c.system},   {"groupoid", c.groupoid},   {"status", c.status()},
+                  {"states", c.states},   {"samples", c.samples},     {"seed", c.seed},
+                  {"seconds", c.seconds}, {"symmetries", symmetries}, {"reductions", reductions},
+                  {"suites", suites}};
   if (!c.failure.empty()) out["message"] = c.failure;
   return json_text(out);
 }

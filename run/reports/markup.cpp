@@ -6,8 +6,6 @@
 
 namespace lagroid {
 
-using Json = nlohmann::ordered_json;
-
 std::string in_html(std::string_view text) {
   std::string out;
   for (const char c : visible(text)) switch (c) {
@@ -49,10 +47,12 @@ std::string in_csv(std::string_view text) {
   return '"' + out + '"';
 }
 
-std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
 
-std::string in_script(const Json& json) {
-  std::string out = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string in_script(const nlohmann::ordered_json& json) {
+  std::string out = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   boost::replace_all(out, "<", "\\u003c");
   return out;
 }

@@ -11,10 +11,10 @@ namespace lagroid {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json json(const Endpoint& e) {
-  Json out;
+OrderedJson json(const Endpoint& e) {
+  OrderedJson out;
   out["time"] = e.time;
   out["position"] = e.position;
   if (e.attitude) out["attitude"] = *e.attitude;
@@ -23,8 +23,8 @@ Json json(const Endpoint& e) {
   return out;
 }
 
-Json json(const LedgerEntry& e) {
-  Json out;
+OrderedJson json(const LedgerEntry& e) {
+  OrderedJson out;
   out["name"] = e.name;
   out["promise"] = e.promise;
   out["verdict"] = e.verdict;
@@ -39,18 +39,18 @@ Json json(const LedgerEntry& e) {
   return out;
 }
 
-Json json(const Coordinate& c) {
-  return std::visit([](const auto& value) { return Json(value); }, c);
+OrderedJson json(const Coordinate& c) {
+  return std::visit([](const auto& value) { return OrderedJson(value); }, c);
 }
 
-Json json(const std::vector<Coordinate>& coordinates) {
-  Json out = Json::array();
+OrderedJson json(const std::vector<Coordinate>& coordinates) {
+  OrderedJson out = OrderedJson::array();
   for (const auto& c : coordinates) out.push_back(json(c));
   return out;
 }
 
-Json json(const Shape& s) {
-  Json turns = Json::array();
+OrderedJson json(const Shape& s) {
+  OrderedJson turns = OrderedJson::array();
   for (const auto& turn : s.turns)
     turns.push_back({{"axis", turn.axis}, {"angle", json(turn.angle)}, {"rate", turn.rate}});
   return {{"kind", s.kind},         {"size", s.size},   {"position", json(s.position)},
@@ -59,17 +59,17 @@ Json json(const Shape& s) {
 }
 
 /// `panels_of` reads it.
-Json json(const Panel& p) {
+OrderedJson json(const Panel& p) {
   return {{"title", p.title},   {"x_label", p.x_label},       {"y_label", p.y_label},   {"x", p.x},
           {"curves", p.curves}, {"equal_axes", p.equal_axes}, {"x_offset", p.x_offset}, {"y_offset", p.y_offset}};
 }
 
 /// `events_of` reads all but the rows.
-Json json(const EventTable& events) {
-  Json watched = Json::array();
+OrderedJson json(const EventTable& events) {
+  OrderedJson watched = OrderedJson::array();
   for (std::size_t i = 0; i < events.watched.size(); ++i) {
     const WatchedEvent& event = events.watched[i];
-    Json each{{"name", event.name}, {"when", event.when}, {"count", event.count}, {"touches", event.touches}};
+    OrderedJson each{{"name", event.name}, {"when", event.when}, {"count", event.count}, {"touches", event.touches}};
     if (const auto span = span_of(events, i)) {
       each["first"] = span->first;
       each["last"] = span->last;
@@ -81,7 +81,7 @@ Json json(const EventTable& events) {
     if (!event.plot.empty()) each["plot"] = event.plot;
     watched.push_back(std::move(each));
   }
-  Json rows = Json::array();
+  OrderedJson rows = OrderedJson::array();
   for (const Happening& row : events.rows)
     rows.push_back({{"event", events.watched[row.event].name},
                     {"t", row.time},
@@ -93,8 +93,8 @@ Json json(const EventTable& events) {
   return {{"watched", watched}, {"columns", events.columns}, {"rows", rows}};
 }
 
-template <class T> Json array_of(const std::vector<T>& items) {
-  Json out = Json::array();
+template <class T> OrderedJson array_of(const std::vector<T>& items) {
+  OrderedJson out = OrderedJson::array();
   for (const auto& item : items) out.push_back(json(item));
   return out;
 }
@@ -178,7 +178,7 @@ std::string text_report(const RunResult& r) {
 }
 
 std::string json_report(const RunResult& r) {
-  Json out;
+  OrderedJson out;
   out["system"] = r.system;
   out["status"] = run_status(r);
   if (!r.method.empty()) out["method"] = r.method;
@@ -193,7 +193,7 @@ std::string json_report(const RunResult& r) {
   out["final"] = json(r.final);
   out["multipliers"] = {{"first", r.first_multipliers}, {"last", r.last_multipliers}};
   if (r.starts > 0) out["starts"] = r.starts;
-  Json paths = Json::array();
+  OrderedJson paths = OrderedJson::array();
   for (const auto& path : r.stationary_paths)
     paths.push_back({{"cost", path.cost},
                      {"starts", path.starts},
@@ -203,7 +203,7 @@ std::string json_report(const RunResult& r) {
                      {"normal", path.normal},
                      {"negative_directions", path.negative_directions}});
   out["stationary_paths"] = paths;
-  Json ledger;
+  OrderedJson ledger;
   ledger["entries"] = array_of(r.ledger.entries);
   ledger["iterations"] = {
       {"mean", r.ledger.mean_iterations}, {"max", r.ledger.most_iterations}, {"verdict", solver_verdict(r)}};
@@ -215,20 +215,20 @@ std::string json_report(const RunResult& r) {
   return json_text(out);
 }
 
-std::vector<Panel> panels_of(const Json& summary) {
+std::vector<Panel> panels_of(const OrderedJson& summary) {
   std::vector<Panel> out;
-  for (const Json& p : summary.at("picture").at("panels"))
+  for (const OrderedJson& p : summary.at("picture").at("panels"))
     out.push_back({p.at("title"), p.at("x_label"), p.at("y_label"), p.at("x"), p.at("curves"), p.at("equal_axes"),
                    p.at("x_offset"), p.at("y_offset")});
   return out;
 }
 
-EventTable events_of(const Json& summary) {
+EventTable events_of(const OrderedJson& summary) {
   EventTable events;
   if (!summary.contains("events")) return events;
-  const Json& table = summary.at("events");
+  const OrderedJson& table = summary.at("events");
   events.columns = table.at("columns").get<std::vector<std::string>>();
-  for (const Json& each : table.at("watched")) {
+  for (const OrderedJson& each : table.at("watched")) {
     WatchedEvent event{each.at("name"), each.at("when"), {}, each.at("count"), each.at("touches")};
     if (each.contains("plot")) event.plot = each.at("plot").get<std::vector<std::string>>();
     events.watched.push_back(std::move(event));

@@ -8,7 +8,7 @@ namespace {
 
 // Medians of five runs of the parameter study that accompanies [H] (its repository's results, k = 1): noise,
 // integrator, N, M, test error E1, and the training loss, which is the mean squared error over 20.
-constexpr std::array<PublishedFit, 192> published{{
+constexpr std::array<PublishedFit, 192> published_fits{{
     {0, "CF4", 50, 2, 2.297e-05, 1.749e-08},       {0, "CF4", 50, 3, 7.794e-06, 5.575e-09},
     {0, "CF4", 50, 5, 9.199e-06, 3.46e-09},        {0, "CF4", 500, 2, 1.612e-07, 3.021e-10},
     {0, "CF4", 500, 3, 2.268e-07, 2.498e-10},      {0, "CF4", 500, 5, 1.738e-07, 1.393e-10},
@@ -110,7 +110,7 @@ constexpr std::array<PublishedFit, 192> published{{
 }  // namespace
 
 const PublishedFit* published_fit(double noise, std::string_view integrator, int count, int points) {
-  for (const auto& fit : published)
+  for (const auto& fit : published_fits)
     if (fit.noise == noise && fit.integrator == integrator && fit.count == count && fit.points == points) return &fit;
   return nullptr;
 }

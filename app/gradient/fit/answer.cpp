@@ -7,14 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace lagroid::app {
 
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Directions that span the same, with as many zeros as there are directions to them: Gauss and Jordan, with the
 /// largest pivot.

@@ -7,14 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace lagroid::app {
 
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// (y_i - d_i) / sigma_i.
 class Residual final : public ceres::CostFunction {

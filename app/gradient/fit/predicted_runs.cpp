@@ -57,7 +57,6 @@ class PredictedRuns::Course {
   /// Of a step: what follows a node sooner is reached from the node before, for the momenta of a part of a step are
   /// differences of places over its duration.
   static constexpr double shortest = 1e-3;
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
   std::unique_ptr<LinearisedMotion> motion_;
   Eigen::MatrixXd directions_;
   long node_ = 0;

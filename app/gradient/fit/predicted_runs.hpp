@@ -20,6 +20,8 @@
 
 namespace lagroid::app {
 
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
 class PredictedRuns final : public ceres::EvaluationCallback {
  public:
   PredictedRuns(const GradientSubject& subject, const GradientColumns& columns, std::vector<MeasuredRun> runs);
@@ -47,7 +49,7 @@ class PredictedRuns final : public ceres::EvaluationCallback {
   const GradientSubject& subject_;
   const GradientColumns& columns_;
   std::vector<MeasuredRun> runs_;
-  double last_ = std::numeric_limits<double>::infinity();
+  double last_ = infinite;
   std::vector<double> x_;
   Eigen::VectorXd predicted_;
   Eigen::MatrixXd derivatives_;

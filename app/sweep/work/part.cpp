@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 /// The column of the given name, which is made where it is missing; `at` is where it is expected: members name theirs
 /// in the same order.
@@ -57,7 +57,7 @@ void SweepPart::end(long at, const std::string& status, const std::string& messa
 
 void SweepPart::set(long at, const std::string& name, const std::string& unit, const std::string& meaning,
                     double value) {
-  named(columns_, column_at_, name, unit, meaning, status_.size(), missing).values[std::size_t(at)] = value;
+  named(columns_, column_at_, name, unit, meaning, status_.size(), no_value).values[std::size_t(at)] = value;
 }
 
 void SweepPart::set_series(long at, const std::string& name, const std::string& unit, const std::string& meaning,
@@ -77,7 +77,7 @@ void SweepPart::append(const SweepPart& next) {
       std::copy(column.values.begin(), column.values.end(), to.values.begin() + std::ptrdiff_t(before));
     }
   };
-  join(columns_, next.columns_, column_at_, missing);
+  join(columns_, next.columns_, column_at_, no_value);
   join(series_, next.series_, series_at_, std::vector<double>());
 }
 

@@ -26,9 +26,9 @@ namespace {
 constexpr std::array study_files{"study.csv", "study.json", "study.md",  "study.gp",
                                  "study.svg", "study.png",  "study.html"};
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+OrderedJson number(double x) { return std::isfinite(x) ? OrderedJson(x) : OrderedJson(nullptr); }
 std::string cell(double x, const char* format = "{:.2g}") {
   return std::isfinite(x) ? fmt::format(fmt::runtime(format), x) : "";
 }
@@ -349,7 +349,7 @@ std::string study_text(const Findings& findings) {
 }
 
 std::string study_json(const Findings& findings) {
-  Json out;
+  OrderedJson out;
   out["status"] = findings.interrupted ? "interrupted" : "done";
   out["scene"] = findings.scene;
   out["system"] = findings.name;
@@ -358,7 +358,7 @@ std::string study_json(const Findings& findings) {
   out["time"] = findings.end;
   out["reference"] = {{"method", findings.reference}, {"uncertainty", number(findings.uncertainty)}};
   for (const NamedVector& block : findings.reference_state) {
-    Json b = {{"name", block.name}, {"size", block.size}, {"values", block.values}};
+    OrderedJson b = {{"name", block.name}, {"size", block.size}, {"values", block.values}};
     out["reference"]["state"].push_back(b);
   }
   for (const Measurement& m : findings.runs)
@@ -389,7 +389,7 @@ std::string study_json(const Findings& findings) {
   }
   for (const auto& line : recommendation(findings)) out["recommendation"].push_back(line);
   out["budget"] = findings.budget;
-  out["not_measured"] = Json::array();
+  out["not_measured"] = OrderedJson::array();
   for (const LeftOut& each : findings.left_out)
     out["not_measured"].push_back({{"method", each.method}, {"step", each.step}, {"why", each.why}});
   return json_text(out);

@@ -402,8 +402,14 @@ TEST(EventsOfBodiesWithoutDerivative, AreToldInOneLine) {
   turns[0].direction = Event::Direction::both;
   turns[0].function = [highest](const VariedVector& seen) { return V(place(seen, 0)(0) - (highest + 1e-7)); };
   turns[0].tolerance = 1e-4;
-  expect_none(subject, turns, "event \"passes\" only grazes zero");
+  const EventSensitivities touched = run_of(subject, turns), without = run_of(subject, {});
+  ASSERT_TRUE(touched.converged()) << touched.message;
+  EXPECT_TRUE(touched.happened.empty());
+  ASSERT_EQ(touched.notes.size(), 1u);
+  EXPECT_NE(touched.notes[0].find("came to zero 1 times"), std::string::npos) << touched.notes[0];
+  EXPECT_EQ(touched.by_start, without.by_start);
   turns[0].kick = Colliding::events()[1].kick;
+  expect_none(subject, turns, "event \"passes\" only grazes zero");
   MotionThroughEvents kicked = motion_of(subject, turns);
   EXPECT_THROW(propagate_backward(kicked, Colliding::steps), EventWithoutDerivative);
   // At a node: its time depends on what is given.

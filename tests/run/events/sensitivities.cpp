@@ -224,11 +224,18 @@ TEST(EventSensitivities, BetweenEventsTheMatrixIsSymplecticAndReflectionsKeepAre
   EXPECT_NEAR(end.by_start.determinant(), 1, 1e-10);
 }
 
-TEST(EventSensitivities, OfWhatOnlyGrazesAreRefused) {
+TEST(EventSensitivities, OfWhatOnlyGrazesAreRefusedWhereTheMotionDependsOnIt) {
   Ball ball;
   ball.h = 0.11;
   const State<Pair<1>> up{Vector<double, 1>(0.0), Vector<double, 1>(2.0)};  // to a height of 1
   SmoothEvent<Ball> ceiling{"ceiling", [](const EventNode<Ball>& node) { return node.object(0) - 1.0; }};
+  const EventSensitivities touched = event_sensitivities(ball, up, Events{ceiling}, {.steps = 30});
+  ASSERT_TRUE(touched.converged()) << touched.message;
+  EXPECT_TRUE(touched.happened.empty());
+  ASSERT_EQ(touched.notes.size(), 1u);
+  EXPECT_NE(touched.notes[0].find("came to zero 1 times"), std::string::npos) << touched.notes[0];
+  EXPECT_EQ(touched.by_start, event_sensitivities(ball, up, Events{}, {.steps = 30}).by_start);
+  ceiling.then = Event::Then::stop;
   const EventSensitivities grazed = event_sensitivities(ball, up, Events{ceiling}, {.steps = 30});
   EXPECT_EQ(grazed.status, SolveStatus::singular);
   EXPECT_NE(grazed.message.find("event \"ceiling\" only grazes zero"), std::string::npos) << grazed.message;
