@@ -13,7 +13,7 @@ namespace lagroid {
 namespace {
 
 /// Of the differences that are slopes: truncation and round-off are of the same small size.
-constexpr double spacing = 1.0 / 256;
+constexpr double slope_spacing = 1.0 / 256;
 
 double finite_value(const StepFunction& g, double share) {
   const double value = g(share);
@@ -66,12 +66,12 @@ RootInStep root_within(const StepFunction& g, double a, double b, double at_a, d
 }
 
 double slope_within(const StepFunction& g, double share) {
-  if (share >= 2 * spacing && share <= 1 - 2 * spacing) {
-    const double inner = finite_value(g, share + spacing) - finite_value(g, share - spacing);
-    const double outer = finite_value(g, share + 2 * spacing) - finite_value(g, share - 2 * spacing);
-    return (8 * inner - outer) / (12 * spacing);
+  if (share >= 2 * slope_spacing && share <= 1 - 2 * slope_spacing) {
+    const double inner = finite_value(g, share + slope_spacing) - finite_value(g, share - slope_spacing);
+    const double outer = finite_value(g, share + 2 * slope_spacing) - finite_value(g, share - 2 * slope_spacing);
+    return (8 * inner - outer) / (12 * slope_spacing);
   }
-  const double inwards = share < 0.5 ? spacing : -spacing;
+  const double inwards = share < 0.5 ? slope_spacing : -slope_spacing;
   const auto at = [&](int k) { return finite_value(g, share + k * inwards); };
   return (-25 * at(0) + 48 * at(1) - 36 * at(2) + 16 * at(3) - 3 * at(4)) / (12 * inwards);
 }
@@ -80,7 +80,7 @@ double turn_within(const StepFunction& g, double slope_at_0, double slope_at_1) 
   const double turn =
       root_within([&](double share) { return slope_within(g, share); }, 0, 1, slope_at_0, slope_at_1).share;
   // Of a smooth function the slope changes little over the differences that make it; a kink it smooths over.
-  constexpr double around = 4 * spacing;
+  constexpr double around = 4 * slope_spacing;
   const double low = std::max(0.0, turn - around), high = std::min(1.0, turn + around);
   const double change = slope_within(g, high) - slope_within(g, low);
   if (std::abs(change) <= 0.25 * std::abs(slope_at_1 - slope_at_0)) return turn;
