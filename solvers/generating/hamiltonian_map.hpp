@@ -250,7 +250,7 @@ template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point
 
   Equations at = equations(point, here, h, unknown);
   if (!at.residual.allFinite() || !at.matrix.allFinite()) return SolveStatus::not_finite;
-  const bool positive = Factor(at.reference).positive();
+  const bool is_positive = Factor(at.reference).positive();
   double last = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Factor factor(at.matrix);
@@ -261,7 +261,7 @@ template <GeneratingFunction F> SolveStatus HamiltonianMap<F>::step(Point& point
     if (at.roundoff_ratio <= 1 || (at.roundoff_ratio <= floor && at.roundoff_ratio >= last / 2)) {
       const Factor solved(at.matrix);
       if (!solved.regular()) return SolveStatus::singular;
-      if (solved.positive() != positive) return SolveStatus::left_domain;
+      if (solved.positive() != is_positive) return SolveStatus::left_domain;
       point.q = at.q;
       point.p = at.p;
       if constexpr (d > 0) point.multipliers = unknown.template tail<d>();
