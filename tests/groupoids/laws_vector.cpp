@@ -10,12 +10,12 @@ using namespace lagroid;
 namespace groupoids_laws_vector_tests {
 namespace {
 
-template <class G> class GroupoidLaws : public ::testing::Test {};
+template <class G> class LawsOfVectors : public ::testing::Test {};
 
 using Subjects = ::testing::Types<Pair<1>, Pair<2>, Pair<3>, VectorGroup<2>, VectorGroup<3>>;
-TYPED_TEST_SUITE(GroupoidLaws, Subjects);
+TYPED_TEST_SUITE(LawsOfVectors, Subjects);
 
-TYPED_TEST(GroupoidLaws, Hold) {
+TYPED_TEST(LawsOfVectors, Hold) {
   const auto report = laws::groupoid_laws<TypeParam>();
   EXPECT_TRUE(report.holds()) << report;
 }

@@ -12,14 +12,14 @@ namespace {
 
 constexpr int steps = 1000;
 
-struct NonholonomicReduction : testing::Test {
+struct NonholonomicReductionByRotations : testing::Test {
   RollingBall full;
   State<RollingBall::GroupoidType> z = full.rolling(Vector<double, 2>(1, 0.3), Vector<double, 2>(0.2, -0.1), 0.7);
   ArrowOf<RollingBall::GroupoidType> start = full.groupoid.unit(z.object);
   std::vector<ArrowOf<RollingBall::GroupoidType>> arrows = arrows_about(full.groupoid, z.object);
 };
 
-TEST_F(NonholonomicReduction, OfTheRollingBallByRotations) {
+TEST_F(NonholonomicReductionByRotations, OfTheRollingBallByRotations) {
   full.plate_rate = 0.4;
   z = full.rolling(Vector<double, 2>(1, 0.3), Vector<double, 2>(0.2, -0.1), 0.7);
   const auto reduced = reduce(RotatedPlaneQuotient{}, full, arrows);
@@ -36,7 +36,7 @@ struct Slipping : System<Slipping, RollingBall::GroupoidType, 1> {
     return ball.annihilator(q).col(0);
   }
 };
-TEST_F(NonholonomicReduction, NamesADistributionThatDoesNotDescend) {
+TEST_F(NonholonomicReductionByRotations, NamesADistributionThatDoesNotDescend) {
   const auto report = examine_descent(ReducedSystem<RotatedPlaneQuotient, Slipping>(),
                                       std::span<const ArrowOf<RollingBall::GroupoidType>>(arrows));
   ASSERT_FALSE(report.descends());
