@@ -28,7 +28,7 @@ namespace lagroid::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 1> pages{"view.html"};
 
@@ -43,12 +43,12 @@ fs::path file_of_run(const std::string& run, const char* name) {
 }
 
 /// Refuses texts that no scene may hold: a summary whose names have them is by someone else.
-void require_plain(const Json& json, const fs::path& file) {
+void require_plain(const OrderedJson& json, const fs::path& file) {
   if (json.is_string() && visible(json.get_ref<const std::string&>()) != json.get_ref<const std::string&>())
     throw RunError(fmt::format("{}: has control characters in \"{}\"; run the scene again", file.string(),
                                json.get_ref<const std::string&>()));
   if (json.is_structured())
-    for (const Json& inner : json) require_plain(inner, file);
+    for (const OrderedJson& inner : json) require_plain(inner, file);
 }
 
 /// What `use` makes of the summary of a run.
@@ -59,7 +59,7 @@ template <class Use> auto from_summary(const std::string& run, const Use& use) {
   require_plain(*summary, file);
   try {
     return use(*summary);
-  } catch (const Json::exception& error) {
+  } catch (const OrderedJson::exception& error) {
     throw RunError(fmt::format("{}: is no summary of a run, or that of another lagroid ({}); run the scene again",
                                file.string(), error.what()));
   }
@@ -88,8 +88,8 @@ std::vector<std::size_t> chosen_rows(std::size_t rows, std::size_t most) {
 }
 
 struct Columns {
-  Json time = Json::array();
-  Json by_label = Json::object();
+  OrderedJson time = OrderedJson::array();
+  OrderedJson by_label = OrderedJson::object();
   std::size_t recorded = 0;
 };
 
@@ -127,9 +127,9 @@ Columns read_columns(const fs::path& file, long most_rows) {
         throw RunError(
             fmt::format("{}: \"{}\" has another number of rows than time; run the scene again", file.string(), name));
       for (std::size_t c = 0; c < labels.size(); ++c) {
-        Json column = Json::array();
+        OrderedJson column = OrderedJson::array();
         for (const std::size_t row : rows)
-          column.push_back(row < first ? Json() : Json(values[(row - first) * labels.size() + c]));
+          column.push_back(row < first ? OrderedJson() : OrderedJson(values[(row - first) * labels.size() + c]));
         columns.by_label[labels[c]] = std::move(column);
       }
     }
@@ -164,8 +164,8 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 }
 
 /// What the page shows.
-Json data_of_page(const Json& summary, const ViewOptions& options) {
-  Json run;
+OrderedJson data_of_page(const OrderedJson& summary, const ViewOptions& options) {
+  OrderedJson run;
   for (const char* key : {"system", "status", "steps", "notes"}) run[key] = summary.at(key);
   run["message"] = summary.value("message", "");
   run["ledger"] = summary.at("ledger").at("entries");
@@ -179,12 +179,12 @@ Json data_of_page(const Json& summary, const ViewOptions& options) {
     run["notes"].push_back(
         fmt::format("{} of {} recorded rows are on this page", columns.time.size(), columns.recorded));
   if (summary.contains("events")) {
-    Json& events = run["events"] = summary.at("events");
-    Json& rows = events.at("rows");
+    OrderedJson& events = run["events"] = summary.at("events");
+    OrderedJson& rows = events.at("rows");
     const auto shown = chosen_rows(rows.size(), std::size_t(options.most_rows));
     if (shown.size() < rows.size()) {
       run["notes"].push_back(fmt::format("{} of {} events are on this page", shown.size(), rows.size()));
-      Json some = Json::array();
+      OrderedJson some = OrderedJson::array();
       for (const std::size_t row : shown) some.push_back(std::move(rows[row]));
       rows = std::move(some);
     }
@@ -207,7 +207,7 @@ fs::path write_view(const ViewOptions& options) {
   const auto held = folder_there(options.run);
   file_of_run(options.run, "summary.json");
   const std::string data =
-      from_summary(options.run, [&](const Json& summary) { return in_script(data_of_page(summary, options)); });
+      from_summary(options.run, [&](const OrderedJson& summary) { return in_script(data_of_page(summary, options)); });
   const std::string page =
       filled(viewer::page(), {{"@STYLE@", viewer::style()}, {"@RUN@", data}, {"@PROGRAM@", viewer::program()}});
   return write_whole(options.run, pages,
@@ -222,7 +222,7 @@ std::vector<fs::path> draw_plots(const PlotOptions& options) {
   const auto held = folder_there(options.run);
   const fs::path file = file_of_run(options.run, "plot.gp");
   const fs::path excerpt = file_of_run(options.run, "trajectory.csv").parent_path() / "plot.csv";
-  const auto its_own = [&](const Json& summary) {
+  const auto its_own = [&](const OrderedJson& summary) {
     return plot_script(panels_of(summary), events_of(summary), !fs::exists(excerpt));
   };
   if (!options.own_script && contents(file) != from_summary(options.run, its_own))

@@ -19,7 +19,7 @@ namespace lagroid::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::string_view authors = "The Lagroid authors";
 constexpr std::string_view what_it_is = "Discrete mechanics on Lie groupoids";
@@ -96,19 +96,19 @@ std::string as_bibtex(const std::vector<Use>& uses) {
 }
 
 std::string as_json(const std::vector<Use>& uses) {
-  Json out;
+  OrderedJson out;
   out["software"] = {{"author", authors},
                      {"title", "Lagroid"},
                      {"version", LAGROID_VERSION},
                      {"year", year},
                      {"license", "BSD-3-Clause"}};
-  out["references"] = Json::array();
+  out["references"] = OrderedJson::array();
   for (const auto& [reference, what] : uses) {
     const Article& r = *reference;
-    Json names = Json::array();
+    OrderedJson names = OrderedJson::array();
     for (const Author& author : r.authors) names.push_back({{"given", author.given}, {"family", author.family}});
-    Json one{{"key", r.key},       {"authors", names},       {"title", r.title}, {"journal", r.journal},
-             {"volume", r.volume}, {"pages", pages(r, "-")}, {"year", r.year},   {"doi", r.doi}};
+    OrderedJson one{{"key", r.key},       {"authors", names},       {"title", r.title}, {"journal", r.journal},
+                    {"volume", r.volume}, {"pages", pages(r, "-")}, {"year", r.year},   {"doi", r.doi}};
     if (r.number > 0) one["number"] = r.number;
     if (!r.arxiv.empty()) one["arxiv"] = r.arxiv;
     if (!what.empty()) one["for"] = what;
@@ -119,7 +119,7 @@ std::string as_json(const std::vector<Use>& uses) {
 
 /// CITATION.cff, version 1.2.0 of the Citation File Format. Quoted strings of JSON are strings of YAML.
 std::string as_cff(const std::vector<Use>& uses) {
-  const auto quoted = [](std::string_view text) { return Json(text).dump(); };
+  const auto quoted = [](std::string_view text) { return OrderedJson(text).dump(); };
   std::string out = fmt::format(
       "# Written by: lagroid cite --cff\n"
       "cff-version: 1.2.0\n"

@@ -374,17 +374,17 @@ std::string text_of(const GradientTable& table) {
 }
 
 std::string json_of(const GradientTable& table) {
-  using Json = nlohmann::ordered_json;
+  using OrderedJson = nlohmann::ordered_json;
   const auto matrix = [](const Eigen::MatrixXd& a) {
-    Json rows = Json::array();
+    OrderedJson rows = OrderedJson::array();
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
-      Json row = Json::array();
+      OrderedJson row = OrderedJson::array();
       for (Eigen::Index j = 0; j < a.cols(); ++j) row.push_back(a(i, j));
       rows.push_back(row);
     }
     return rows;
   };
-  Json out = {
+  OrderedJson out = {
       {"system", table.system},   {"steps", table.steps}, {"status", table.failure.empty() ? "converged" : "failed"},
       {"message", table.failure}, {"of", table.rows},     {"by", table.columns}};
   if (table.failure.empty()) {

@@ -231,12 +231,12 @@ std::string text_of(const Uncertainty& u) {
 }
 
 std::string json_of(const Uncertainty& u) {
-  using Json = nlohmann::ordered_json;
-  Json out = Json::parse(json_of(u.table));
+  using OrderedJson = nlohmann::ordered_json;
+  OrderedJson out = OrderedJson::parse(json_of(u.table));
   if (!u.table.failure.empty()) return out.dump(2);
   const auto vector = [](const Eigen::VectorXd& v) { return std::vector<double>(v.data(), v.data() + v.size()); };
   const auto matrix = [&](const Eigen::MatrixXd& a) {
-    Json rows = Json::array();
+    OrderedJson rows = OrderedJson::array();
     for (Eigen::Index i = 0; i < a.rows(); ++i) rows.push_back(vector(a.row(i)));
     return rows;
   };

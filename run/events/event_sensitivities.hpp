@@ -15,7 +15,8 @@
 ///
 /// Requires what `sensitivities` does, and a Lagrangian that takes its step as an argument; events at zero. Returns a
 /// status: `singular` where an event grazes zero, or two happen at once, for there the derivative does not exist; that
-/// of a step that fails; `left_domain` where a function is no finite number.
+/// of a step that fails; `left_domain` where a function is no finite number. An event that only records and touches
+/// zero has not happened, which is noted.
 ///
 /// Errors: std::invalid_argument for a name that is no parameter or an event without a function; WithoutDerivative for
 /// a parameter, or a force's step size, that the system reads as a plain number. Source: implicit function theorem at
@@ -136,13 +137,9 @@ template <DiscreteSystem Sys> class EventPropagation {
     if (observed_node_ == 0) observe_end();
     for (long k = 0; k < steps && !is_over_; ++k) advance(k + 1);
     if (out_.converged()) finish();
-    for (std::size_t i = 0; i < events_.size(); ++i) {
-      const auto note = [&](const std::string& what) {
-        out_.notes.push_back("event \"" + events_[i].name + "\": " + what);
-      };
-      for (const std::string& each : watches_[i].notes()) note(each);
-      if (touched_[i] > 0) note(words_of_touches(touched_[i]));
-    }
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      for (const std::string& note : watches_[i].notes(touched_[i]))
+        out_.notes.push_back("event \"" + events_[i].name + "\": " + note);
     return std::move(out_);
   }
 

@@ -188,7 +188,7 @@ double FunctionWatch::uncertainty(const FoundInStep& found, const StepFunction& 
   }
 }
 
-std::vector<std::string> FunctionWatch::notes() const {
+std::vector<std::string> FunctionWatch::notes(long touches) const {
   std::vector<std::string> out;
   if (starts_there_)
     out.push_back(fmt::format("its function is {} at the start, which is not counted", at_ == Event::At::zero ? "zero"
@@ -210,6 +210,7 @@ std::vector<std::string> FunctionWatch::notes() const {
         fmt::format("its function was no finite number at {} of {} nodes, the first at t = {:.6g}; nothing "
                     "was found next to them",
                     undefined_.times, nodes_, undefined_.first));
+  if (touches > 0) out.push_back(words_of_touches(touches));
   return out;
 }
 

@@ -79,8 +79,9 @@ class FunctionWatch {
   const Count& jumps() const { return jumps_; }          ///< a sign that changed without a zero
   const Count& flat() const { return flat_; }            ///< an extremum of round-off
   bool starts_there() const { return starts_there_; }    ///< the first node is a zero, or an extremum, of the function
-  /// Those of them that are to be told, in words.
-  std::vector<std::string> notes() const;
+  /// Those of them that are to be told, in words; of a function that came to zero so often without passing it, that,
+  /// too.
+  std::vector<std::string> notes(long touches = 0) const;
 
   template <class Archive> void serialize(Archive& archive) {
     archive("nodes", nodes_);

@@ -163,12 +163,12 @@ void MotionThroughEvents::take(const std::vector<Found>& found, double length) {
       const Found& each = found[last++];
       const ObservedEvent& event = events_[each.event];
       piece.duration = each.share * length;
-      if (each.passing == Passing::touching && !event.decides()) {
-        ++touched_[each.event];
-        continue;
-      }
       if (each.passing == Passing::touching) {  // which changes nothing
-        pieces_.push_back({.duration = piece.duration, .events = {each.event}, .touches = true});
+        if (event.decides()) {
+          pieces_.push_back({.duration = piece.duration, .events = {each.event}, .touches = true});
+        } else {
+          ++touched_[each.event];
+        }
         continue;
       }
       piece.events.push_back(each.event);

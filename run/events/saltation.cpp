@@ -297,13 +297,9 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
   } catch (const EventWithoutDerivative& none) {
     fail(SolveStatus::singular, none.what());
   }
-  for (std::size_t i = 0; i < events_.size(); ++i) {
-    const auto note = [&](const std::string& what) {
-      out.notes.push_back(fmt::format("event \"{}\": {}", events_[i].name, what));
-    };
-    for (const std::string& each : watches_[i].notes()) note(each);
-    if (touched_[i] > 0) note(words_of_touches(touched_[i]));
-  }
+  for (std::size_t i = 0; i < events_.size(); ++i)
+    for (const std::string& note : watches_[i].notes(touched_[i]))
+      out.notes.push_back(fmt::format("event \"{}\": {}", events_[i].name, note));
   return out;
 }
 

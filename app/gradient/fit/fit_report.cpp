@@ -74,16 +74,16 @@ std::string text_of(const Fit& fit) {
 }
 
 std::string json_of(const Fit& fit) {
-  using Json = nlohmann::ordered_json;
-  const auto finite = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
-  Json out = {{"system", fit.system}, {"status", fit.status}, {"message", fit.failure}, {"runs", fit.runs}};
+  using OrderedJson = nlohmann::ordered_json;
+  const auto finite = [](double x) { return std::isfinite(x) ? OrderedJson(x) : OrderedJson(); };
+  OrderedJson out = {{"system", fit.system}, {"status", fit.status}, {"message", fit.failure}, {"runs", fit.runs}};
   if (!fit.failure.empty()) return out.dump(2);
   out["iterations"] = fit.iterations;
   out["cost"] = fit.cost;
-  out["other_costs"] = Json::array();
+  out["other_costs"] = OrderedJson::array();
   for (const double each : fit.other_costs) out["other_costs"].push_back(finite(each));
   out["scale"] = fit.scale;
-  out["unknowns"] = Json::array();
+  out["unknowns"] = OrderedJson::array();
   for (const Fit::Unknown& each : fit.unknowns)
     out["unknowns"].push_back({{"name", each.name},
                                {"value", each.value},
@@ -95,11 +95,11 @@ std::string json_of(const Fit& fit) {
   out["singular_values"] = std::vector<double>(fit.singular_values.begin(), fit.singular_values.end());
   out["null_space"] = matrix_of(fit.null_space);
   out["undetermined"] = fit.undetermined;
-  out["combinations"] = Json::array();
+  out["combinations"] = OrderedJson::array();
   for (const Fit::Combination& each : fit.combinations)
     out["combinations"].push_back(
         {{"name", each.name}, {"value", finite(each.value)}, {"deviation", finite(each.deviation)}});
-  out["columns"] = Json::array();
+  out["columns"] = OrderedJson::array();
   for (const Fit::Column& each : fit.columns)
     out["columns"].push_back({{"name", each.name},
                               {"count", each.count},

@@ -16,7 +16,7 @@ namespace lagroid::app {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kind = "learned_hamiltonian";
 constexpr int most_bodies = 1000;
@@ -84,19 +84,19 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   if (!text) fail("there is no such file, or it cannot be read");
   const auto read = read_json(*text);
   if (!read || !read->is_object()) fail("no JSON object");
-  const Json& json = *read;
-  if (json.value("kind", Json()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
+  const OrderedJson& json = *read;
+  if (json.value("kind", OrderedJson()) != kind) fail(fmt::format("kind is not \"{}\"", kind));
   constexpr std::array known{"kind", "bodies", "coordinates", "model", "dissipation", "parameters"};
   for (const auto& [key, value] : json.items())
     if (std::find(known.begin(), known.end(), key) == known.end()) fail(fmt::format("nobody knows its key {}", key));
   const bool on_spheres = !json.contains("coordinates");
   if (!on_spheres && json.contains("bodies")) fail("it has both bodies and coordinates");
-  const auto count = json.value(on_spheres ? "bodies" : "coordinates", Json());
+  const auto count = json.value(on_spheres ? "bodies" : "coordinates", OrderedJson());
   if (!count.is_number_integer() || count < 1 || count > (on_spheres ? most_bodies : most_coordinates))
     fail(on_spheres ? "bodies is no number of bodies" : "coordinates is no number of coordinates");
-  const auto damped = json.value("dissipation", Json(false));
+  const auto damped = json.value("dissipation", OrderedJson(false));
   if (!damped.is_boolean()) fail("dissipation is neither true nor false");
-  const auto name = json.value("model", Json());
+  const auto name = json.value("model", OrderedJson());
   if (!name.is_string()) fail("model is no name");
   LearnedHamiltonian out;
   try {
@@ -107,7 +107,7 @@ LearnedHamiltonian read_model(const std::filesystem::path& file) {
   } catch (const ModelError& error) {
     throw ModelError(fmt::format("{}: {}", file.string(), error.what()));
   }
-  const auto parameters = json.value("parameters", Json());
+  const auto parameters = json.value("parameters", OrderedJson());
   if (!parameters.is_array() || Eigen::Index(parameters.size()) != out.model->size())
     fail(fmt::format("parameters are not the {} numbers of {} on {}", out.model->size(), out.model->name(),
                      to_string(out.model->space())));

@@ -30,6 +30,7 @@ LAGROID_STEP_SOLVERS(extern template, GyrostatAtItsMomenta);
 LAGROID_STEP_SOLVERS(extern template, RollingBallByRotations);
 LAGROID_STEP_SOLVERS(extern template, PlateBallByTranslations);
 
+namespace integrators_reduced_tests {
 namespace {
 
 template <std::size_t Place, class Sys>
@@ -121,5 +122,6 @@ TEST(ReducedIntegrator, AllocatesNothing) {
 }
 
 }  // namespace
+}  // namespace integrators_reduced_tests
 
 }  // namespace lagroid

@@ -21,6 +21,7 @@ LAGROID_POISSON_INTEGRATORS(extern template, LotkaVolterra);
 LAGROID_POISSON_INTEGRATORS(extern template, Sklyanin);
 LAGROID_POISSON_INTEGRATORS(extern template, ThreeSpecies);
 
+namespace poisson_extrapolation_tests {
 namespace {
 
 constexpr double period = 6.8170540474472894;  // of LotkaVolterra from (2, 1/2)
@@ -161,4 +162,5 @@ TEST(PoissonExtrapolation, FailsWhereItCannotGo) {
 }
 
 }  // namespace
+}  // namespace poisson_extrapolation_tests
 }  // namespace lagroid

@@ -23,6 +23,7 @@ LAGROID_POISSON_INTEGRATORS(extern template, LotkaVolterra);
 LAGROID_POISSON_INTEGRATORS(extern template, Sklyanin);
 LAGROID_POISSON_INTEGRATORS(extern template, ThreeSpecies);
 
+namespace poisson_slopes_tests {
 namespace {
 
 template <class Sys> std::vector<std::string> all_names() {
@@ -145,4 +146,5 @@ TEST(PoissonSlopes, WhatHasNoDerivativeIsRefusedByName) {
 }
 
 }  // namespace
+}  // namespace poisson_slopes_tests
 }  // namespace lagroid
