@@ -234,6 +234,23 @@ class Parts(unittest.TestCase):
             self.assertAlmostEqual(value["node.149.p"], float(rows[-2]["p"]), delta=1e-12)
             first = next(row for row in self.rows_of(out / "events.csv") if row["event"] == "wall")
             self.assertAlmostEqual(value["event.wall.1.t"], float(first["t"]), delta=1e-10)
+        # Under another gravity, which depends on how it comes there.
+        changed = ('event=[{name = "moon", when = "q - 0.1", direction = "falling", set = ["gravity = 3 + 0.5*p^2 + 0.2*t", "mass = 1.2"], '
+                   'kick = ["0.1*q - 0.05*p"]}]')
+        scene = ("gradient", examples / "pendulum.toml", "--set", "time.steps=150", "--set", changed)
+        told = run(of_part("pendulum"), *scene, "--of", "final,events,node.140.p", "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertGreater(found["digits_agreed"], 7)
+        self.assertGreater(len([name for name in found["of"] if name.startswith("event.moon")]), 1)
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            done = run(of_part("pendulum"), "run", *scene[1:], "--out", out, "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertAlmostEqual(found["values"][0], float(self.rows_of(out / "trajectory.csv")[-1]["q"]), delta=1e-12)
+        told = run(of_part("pendulum"), *scene[:4], "--set", changed.replace("1.2", "q - 1"), "--of", "final")
+        self.assertEqual((told.returncode, len(told.stderr.splitlines())), (3, 1), told.stderr)
+        self.assertIn("mass becomes -0.9, and is to be positive", told.stderr)
         # An end that an event makes: on the wall whatever the start, at a time that depends on it.
         stopped = 'event=[{name = "floor", when = "q", then = "stop"}]'
         told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", stopped, "--of", "final.t,final.q",
@@ -463,7 +480,8 @@ class Parts(unittest.TestCase):
             ("--set", "time.method=runge-kutta"): "gradient takes equal steps",
             ("--set", "time.order=4", "--set", 'event=[{name = "x", when = "q"}]'): "by equal steps of order two",
             ("--set", 'event=[{name = "x", when = "q", at = "maximum"}]'): "not of minima and maxima",
-            ("--set", 'event=[{name = "x", when = "q", set = ["gravity = 2"]}]'): "whose system changes on the way",
+            ("--set", 'event=[{name = "x", when = "q", set = ["gravity = energy"]}]'): "derivatives are of t, q, p",
+            ("--set", 'event=[{name = "x", when = "q", set = ["quadrature = 1"]}]'): "which is no parameter that is a number",
             ("--set", 'event=[{name = "x", when = "energy"}]'): "derivatives are of t, q, p",
             ("--set", 'event=[{name = "x", when = "q - 9"}]', "--of", "events"): "none has happened",
             ("--set", 'event=[{name = "x", when = "q"}]', "--of", "event.x.9.t"): "has happened 1 times",

@@ -197,6 +197,24 @@ kick = ["0.9*a.px", "-0.1*b.py", "0", "0.02*a.px", "0", "0"]
                 self.assertEqual(len(told.stderr.strip().splitlines()), 1, told.stderr)
                 self.assertIn(said, told.stderr)
 
+    def test_fits_go_through_events_that_are_zero_at_the_start(self):
+        # At rest the sling would be released at once, were the start another one; with another mass it stays at rest.
+        release = ('event=[{name = "release", when = "stone.px - stone.pz", direction = "rising", switch_off = ["sling"]}]')
+        scene = (examples / "trebuchet.toml", "--set", release, "--set", "time.steps=700", "--set", "output.every=1")
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "thrown"
+            told = run(of_part("bodies"), "run", *scene, "--set", "body.1.mass=2.2", "--out", out)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            self.assertEqual(len(json.loads((out / "summary.json").read_text())["events"]["rows"]), 1)
+            words = ("fit", scene[0], out / "trajectory.csv", *scene[1:], "--of", "stone.x,stone.z", "--wrt")
+            told = run(of_part("bodies"), *words, "parameters.stone.mass", "--json")
+            self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+            self.assertLess(abs(json.loads(told.stdout)["unknowns"][0]["value"] - 2.2), 1e-8, told.stdout)
+            for more in ((), ("--starts", "2")):
+                told = run(of_part("bodies"), *words, "initial.stone.px,parameters.stone.mass", *more)
+                self.assertEqual((told.returncode, len(told.stderr.splitlines())), (3, 1), told.stdout + told.stderr)
+                self.assertIn('event "release" is zero at the start', told.stderr)
+
     def test_gradients_by_the_numbers_of_most_joints_and_effects(self):
         scene = pathlib.Path(__file__).parent / "data" / "many_bodies.toml"
         told = run(of_part("bodies"), "gradient", scene, "--check", "--json")
@@ -234,6 +252,14 @@ kick = ["0.9*a.px", "-0.1*b.py", "0", "0.02*a.px", "0", "0"]
             told = run(of_part("bodies"), "gradient", examples / f"{scene}.toml", "--wrt", f"parameters.{number}")
             self.assertEqual(told.returncode, 2, told.stdout)
             self.assertIn(why, told.stderr)
+            # Asked for with all others it is left out, and told.
+            told = run(of_part("bodies"), "gradient", examples / f"{scene}.toml", "--set", "time.steps=5", "--of", "final.energy",
+                       "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            (left_out,) = [note for note in found["notes"] if "left out" in note]
+            self.assertIn(f"parameters.{number}, ", left_out)
+            self.assertNotIn(f"parameters.{number}", found["by"])
         told = run(of_part("bodies"), "gradient", examples / "close_encounters.toml")
         self.assertEqual(told.returncode, 2, told.stdout)
         self.assertIn("no derivatives through events by controlled steps", told.stderr)

@@ -136,7 +136,11 @@ std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, con
   const auto momenta = Eigen::Index(3 * (motion.state().momentum.size() + motion.state().spin.size()));
   std::vector<ObservedEvent> out;
   for (const Event& event : events) {
-    const auto texts = std::make_shared<EventExpressions>(event, observed, int(event.kick.size()), /*switched=*/true);
+    if (!event.set.empty())
+      throw std::invalid_argument(fmt::format(
+          "event \"{}\": of bodies, a run whose numbers change on the way has no derivatives here; leave it out",
+          event.name));
+    const auto texts = std::make_shared<EventExpressions>(event, observed, int(event.kick.size()));
     ObservedEvent smooth{.name = event.name,
                          .when = event.when,
                          .function = [texts](const VariedVector& seen) { return texts->when(seen); },

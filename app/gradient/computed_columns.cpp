@@ -35,6 +35,12 @@ class WithColumns final : public LinearisedMotion {
   int stages() const override { return motion_->stages(); }
   const StepDerivative& stage(int k) const override { return motion_->stage(k); }
   void serialize(NumberArchive& archive) override { motion_->serialize(archive); }
+  StepReport pass() override { return motion_->pass(); }
+  void keep_node(std::unique_ptr<KeptNode>& node) override { motion_->keep_node(node); }
+  void return_to(const KeptNode& node) override { motion_->return_to(node); }
+  bool take_back(const KeptNode& before, const KeptNode& after, Eigen::MatrixXd& gradients) override {
+    return motion_->take_back(before, after, gradients);
+  }
 
   NodeValues observe() const override { return completed(motion_->observe(), motion_->time()); }
   std::optional<NodeValues> observe_later(double time) override {

@@ -175,19 +175,17 @@ class Runs {
 
 }  // namespace
 
-EventExpressions::EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta,
-                                   bool switched)
+EventExpressions::EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta)
     : when(smooth(event.when, event.name, names_in(observed))) {
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("event \"{}\": {}; leave it out", event.name, why));
   };
   if (event.at != Event::At::zero) refuse("derivatives are of events at zero, not of minima and maxima");
-  if (!event.set.empty() || (!switched && !(event.switch_on.empty() && event.switch_off.empty())))
-    refuse("a run whose system changes on the way has no derivatives here");
   if (event.call) refuse("what it calls has no derivative");
   if (!event.kick.empty() && int(event.kick.size()) != momenta)
     refuse(fmt::format("its kick has {} numbers, the momentum has {}", event.kick.size(), momenta));
   for (const std::string& text : event.kick) kick.push_back(smooth(text, event.name, names_in(observed)));
+  for (const auto& [name, text] : event.set) set.emplace_back(name, smooth(text, event.name, names_in(observed)));
 }
 
 void require_events(const std::vector<Event>& events, Motion& motion) try {
@@ -221,7 +219,7 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
   out.steps_solved = whole.steps;
   out.states_kept = 1;
   out.happened = which_happened(whole);
-  out.notes = whole.notes;
+  out.notes.insert(out.notes.end(), whole.notes.begin(), whole.notes.end());
   if (!whole.converged()) {
     out.failure = whole.message;
     return out;

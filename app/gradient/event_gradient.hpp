@@ -21,12 +21,12 @@ namespace lagroid::app {
 
 /// The texts of an event of a scene, of the time `t` and of what is observed.
 struct EventExpressions {
-  /// Throws std::invalid_argument for an event that has no derivative, or texts that are none; whether what it switches
-  /// has one says `switched`.
-  EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta, bool switched = false);
+  /// Throws std::invalid_argument for an event that has no derivative, or texts that are none.
+  EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta);
 
   VariedExpression when;
   std::vector<VariedExpression> kick;
+  std::vector<std::pair<std::string, VariedExpression>> set;  ///< numbers, by the names of what they are set to be
 };
 
 GradientTable differentiate_through_events(const GradientSubject& subject, const std::vector<std::string>& of,

@@ -124,7 +124,7 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
     if (subject.cost && of == GradientOptions{}.of) of = {"cost"};
     if (by == GradientOptions{}.by) {
       if (subject.cost) by.front() = "boundary";
-      if (subject.parameters.empty()) by.pop_back();
+      if (subject.parameters.empty() && subject.refused.empty()) by.pop_back();
     }
     GradientTable table = differentiate(subject, of, by, options.check);
     note_start(scene, subject, table);

@@ -62,7 +62,7 @@ struct GradientSubject {
   /// where the state itself is.
   std::function<Eigen::MatrixXd(const std::vector<std::string>& parameters, const std::vector<Nudge>&)> begun_by =
       nullptr;
-  /// Numbers by which there is no derivative, and why.
+  /// Numbers by which there is no derivative, and why; whether they are among the parameters or not.
   std::vector<std::pair<std::string, std::string>> refused = {};
   std::vector<std::string> notes = {};   ///< on what derivatives hold
   std::vector<std::string> events = {};  ///< of the scene, by their names
@@ -75,6 +75,9 @@ struct GradientSubject {
   /// Of a boundary value, by these parameters; `start` is then both ends. Null for a run.
   std::function<BoundaryCost(const std::vector<std::string>& parameters)> cost = nullptr;
 };
+
+/// Finds the parameters by which motions of `begin` have no derivative, as one step tells: those are `refused`.
+void find_refused(GradientSubject& subject);
 
 /// Adds the parameters of a system, and their sizes after those of the start.
 template <class Sys> void name_parameters(const Sys& system, GradientSubject& subject) {

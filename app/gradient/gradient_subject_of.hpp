@@ -128,6 +128,10 @@ std::vector<SmoothEvent<Sys>> smooth_events(const std::vector<Event>& events, co
         for (int i = 0; i < Sys::dimension; ++i) by(i) = expressions->kick[std::size_t(i)](at);
         return by;
       };
+    for (std::size_t k = 0; k < event.set.size(); ++k)
+      smooth.set.push_back({event.set[k].first, [expressions, numbers, k](const Node& node) {
+                              return expressions->set[k].second(numbers(node));
+                            }});
     smooth.tolerance = std::max(event.tolerance, smooth.tolerance);
     out.push_back(std::move(smooth));
   }
@@ -205,6 +209,7 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     return std::make_unique<LinearisedMotionOf<Sys>>(from.system, differentiating::integrator_of(from, composition),
                                                      parameters, observe);
   };
+  find_refused(out);
   if (!value.extent.events.empty()) {
     if (mode != TimeMode::fixed || split || composition.stages() > 1)
       scene.fail(

@@ -4,6 +4,7 @@
 #include "event_gradient.hpp"
 
 #include <lagroid/solvers/sensitivity/propagate.hpp>
+#include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -59,6 +60,31 @@ Observed observed_at(const std::string& place) {
 /// final, node.10, integral of a row.
 std::string place_of(const std::string& row) { return row.substr(0, row.find('.', row.starts_with("node.") ? 5 : 0)); }
 
+/// Whether a name is that of a number, of a group of it or of a vector with it; all have none.
+bool chooses(const std::string& name, const GradientName& each) {
+  return name.empty() || each.group == name || each.name == name || each.name.starts_with(name + ".");
+}
+
+/// Those that have a derivative; the others are left out, unless the word chooses nothing else.
+std::vector<int> chosen_parameters(const GradientSubject& subject, const std::string& word, const std::string& name,
+                                   std::vector<int>& left_out) {
+  std::vector<int> out, refused;
+  for (int i = 0; i < int(subject.refused.size()); ++i)
+    if (chooses(name, {"parameters", subject.refused[std::size_t(i)].first})) refused.push_back(i);
+  if (refused.empty()) return chosen_names(subject.parameters, word, name);
+  for (int i = 0; i < int(subject.parameters.size()); ++i) {
+    const GradientName& each = subject.parameters[std::size_t(i)];
+    const bool is_refused = std::any_of(subject.refused.begin(), subject.refused.end(),
+                                        [&](const auto& other) { return other.first == each.name; });
+    if (!is_refused && chooses(name, each)) out.push_back(i);
+  }
+  const auto& [first, why] = subject.refused[std::size_t(refused.front())];
+  if (out.empty() && !name.empty()) throw GradientRefused(fmt::format("parameters.{}: {}", first, why));
+  for (const int each : refused)
+    if (std::find(left_out.begin(), left_out.end(), each) == left_out.end()) left_out.push_back(each);
+  return out;
+}
+
 /// Functions at a place, by all columns, in the direction that costs less.
 Propagated propagated(const GradientSubject& subject, const GradientColumns& columns, const Observed& observed,
                       std::size_t rows) {
@@ -96,7 +122,7 @@ std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::s
   std::vector<int> out;
   for (int i = 0; i < int(all.size()); ++i) {
     const GradientName& each = all[std::size_t(i)];
-    if (name.empty() || each.group == name || each.name == name || each.name.starts_with(name + ".")) out.push_back(i);
+    if (chooses(name, each)) out.push_back(i);
   }
   if (!out.empty()) return out;
   std::vector<std::string> names;
@@ -140,6 +166,7 @@ GradientTable table_of(const GradientSubject& subject, const std::vector<std::st
   for (const int i : columns.start)
     out.columns.push_back(fmt::format("{}.{}", word_of_start(subject), subject.start[std::size_t(i)].name));
   for (const std::string& name : names_of(subject, columns)) out.columns.push_back("parameters." + name);
+  out.notes = notes_on_left_out(subject, columns);
   return out;
 }
 
@@ -257,10 +284,8 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
       into = &out.start;
       more = chosen_names(subject.start, word, of_start->name);
     } else if (const auto of_system = split_after(word, "parameters")) {
-      for (const auto& [name, why] : subject.refused)
-        if (name == of_system->name) throw GradientRefused(fmt::format("{}: {}", word, why));
       into = &out.parameters;
-      more = chosen_names(subject.parameters, word, of_system->name);
+      more = chosen_parameters(subject, word, of_system->name, out.left_out);
     } else {
       throw GradientRefused(
           fmt::format("{}: derivatives are by {}.NAME or parameters.NAME", word, word_of_start(subject)));
@@ -268,7 +293,35 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
     for (const int each : more)
       if (std::find(into->begin(), into->end(), each) == into->end()) into->push_back(each);
   }
+  if (out.start.empty() && out.parameters.empty() && !out.left_out.empty())
+    throw GradientRefused(notes_on_left_out(subject, out).front());
   return out;
+}
+
+std::vector<std::string> notes_on_left_out(const GradientSubject& subject, const GradientColumns& columns) {
+  std::vector<std::string> names;
+  for (const int i : columns.left_out) names.push_back("parameters." + subject.refused[std::size_t(i)].first);
+  if (names.empty()) return {};
+  const std::string& why = subject.refused[std::size_t(columns.left_out.front())].second;
+  if (names.size() == 1) return {fmt::format("{} is left out: {}", names.front(), why)};
+  return {fmt::format("{} are left out; {}: {}", fmt::join(names, ", "), names.front(), why)};
+}
+
+void find_refused(GradientSubject& subject) {
+  const auto why_none = [&](const std::vector<std::string>& parameters) -> std::string {
+    try {
+      const auto motion = subject.begin(parameters, {});
+      if (motion->advance().converged()) motion->linearise();
+      return "";
+    } catch (const WithoutDerivative& refusal) {
+      return refusal.what();
+    }
+  };
+  std::vector<std::string> all;
+  for (const GradientName& each : subject.parameters) all.push_back(each.name);
+  if (why_none(all).empty()) return;
+  for (const std::string& name : all)
+    if (std::string why = why_none({name}); !why.empty()) subject.refused.emplace_back(name, std::move(why));
 }
 
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,

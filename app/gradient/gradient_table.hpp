@@ -55,8 +55,12 @@ struct GradientTable {
 struct GradientColumns {
   std::vector<int> start;       ///< places in GradientSubject::start
   std::vector<int> parameters;  ///< and in GradientSubject::parameters
+  std::vector<int> left_out;    ///< in GradientSubject::refused, which a word chooses among others
 };
+/// Throws GradientRefused for a word that chooses nothing, or nothing that has a derivative.
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words);
+/// Which numbers are left out and why, in one line; none where there are none.
+std::vector<std::string> notes_on_left_out(const GradientSubject& subject, const GradientColumns& columns);
 /// The names of its parameters.
 std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns);
 /// Those directions of the state and, below it, the parameters, in which it begins: a column for each of these.

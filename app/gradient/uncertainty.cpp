@@ -102,6 +102,7 @@ InputErrors independent_errors(const GradientSubject& subject, const std::vector
       throw GradientRefused(fmt::format("{}: give NAME=SIGMA, a positive standard deviation", word));
     const GradientColumns columns = columns_of(subject, {word.substr(0, at)});
     for (const int i : columns.start) of_start.push_back("initial." + subject.start[std::size_t(i)].name);
+    for (std::string& note : notes_on_left_out(subject, columns)) out.notes.push_back(std::move(note));
     start.insert(start.end(), columns.start.size(), size);
     for (const std::string& name : names_of(subject, columns)) of_parameters.push_back("parameters." + name);
     parameters.insert(parameters.end(), columns.parameters.size(), size);
@@ -181,6 +182,7 @@ Uncertainty uncertainty_of(const GradientSubject& subject, const std::vector<std
   Uncertainty out;
   out.errors = errors;
   out.table = differentiate(subject, of, errors.names, /*check=*/false);
+  out.table.notes.insert(out.table.notes.begin(), errors.notes.begin(), errors.notes.end());
   if (!out.table.failure.empty()) return out;
   if (out.table.columns != errors.names)
     throw GradientRefused("errors of starts come first, and then those of parameters, each once");

@@ -27,7 +27,8 @@ struct InputErrors {
   std::vector<std::string> names;
   Eigen::MatrixXd covariance;
   bool are_independent = true;
-  std::vector<double> values = {};  ///< what was fitted, in place of what the scene has
+  std::vector<double> values = {};      ///< what was fitted, in place of what the scene has
+  std::vector<std::string> notes = {};  ///< on numbers of a group that have none
 };
 /// Of words NAME=SIGMA, where NAME may be a group: each number of it has that deviation.
 InputErrors independent_errors(const GradientSubject& subject, const std::vector<std::string>& words);

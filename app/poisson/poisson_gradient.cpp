@@ -58,6 +58,7 @@ std::optional<GradientSubject> poisson_gradient(const Section& scene) {
         system->begin(start, asked.options), parameters,
         [system, parameters](const std::vector<double>& x) { return observed(*system, x, parameters); });
   };
+  find_refused(out);
   return out;
 }
 

@@ -4,8 +4,10 @@
 ///     dt* = -(g_x dx + g_theta dtheta) / (g_x X_s + g_t),    dx* = X dx + X_s dt*,
 ///
 /// X the derivative of the partial step that ends there and X_s that by its duration; after a kick k(t, x) the rest of
-/// the step, which is shorter by dt*, goes on from (q*, mu* + k). These are the saltation matrices of the discrete
-/// motion itself: nothing is differenced, and symplectic steps stay so between events.
+/// the step, which is shorter by dt*, goes on from (q*, mu* + k). A parameter that becomes another number p(t, x) there
+/// depends on the start from then on, dp = p_x dx* + p_theta dtheta + p_t dt*, and no more on what it was. These are
+/// the saltation matrices of the discrete motion itself: nothing is differenced, and symplectic steps stay so between
+/// events.
 ///
 ///     SmoothEvent<Bob> floor{"floor", [](const auto& node) { return node.object(1); }};
 ///     floor.direction = Event::Direction::falling;
@@ -15,16 +17,18 @@
 ///
 /// Requires what `sensitivities` does, and a Lagrangian that takes its step as an argument; events at zero. Returns a
 /// status: `singular` where an event grazes zero, or two happen at once, for there the derivative does not exist; that
-/// of a step that fails; `left_domain` where a function is no finite number. An event that only records and touches
-/// zero has not happened, which is noted.
+/// of a step that fails; `left_domain` where a function is no finite number, or what is set is refused by the system.
+/// An event that only records and touches zero has not happened, which is noted.
 ///
 /// Errors: std::invalid_argument for a name that is no parameter or an event without a function; WithoutDerivative for
-/// a parameter, or a force's step size, that the system reads as a plain number. Source: implicit function theorem at
-/// the partial step; Hiskens and Pai, IEEE Trans. Circuits Syst. I 47, 2000, 204 (flows).
+/// a parameter that varies, as it is asked for or set by what does, or a force's step size, that the system reads as a
+/// plain number: the first step that it is in is compared with differences. Source: implicit function theorem at the
+/// partial step; Hiskens and Pai, IEEE Trans. Circuits Syst. I 47, 2000, 204 (flows).
 
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/run/events/function_watch.hpp>
+#include <lagroid/run/motion/parameter_values.hpp>
 #include <lagroid/solvers/sensitivity/growth/growth.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 #include <lagroid/solvers/sensitivity/times/timed_node.hpp>
@@ -57,6 +61,14 @@ template <DiscreteSystem Sys> struct SmoothEvent {
   long count = 1;                   ///< the run stops when it has happened so often
   ObserveEventNode<Sys> kick = {};  ///< added to the momentum there
   double tolerance = 1e-8;          ///< nearer to zero, relative to the largest value so far, its function touches it
+  /// A parameter that is a number, which becomes another one there.
+  struct Setting {
+    std::string name;
+    std::function<VariedNumber(const EventNode<Sys>&)> number;
+  };
+  std::vector<Setting> set = {};
+
+  bool changes_motion() const { return kick || !set.empty(); }
 };
 
 namespace detail {
@@ -114,24 +126,27 @@ template <DiscreteSystem Sys> class EventPropagation {
         observe_(std::move(observe)),
         observed_node_(observed_node),
         places_(places_of_parameters(system_.plain(), parameters)),
-        members_(places_.members),
-        count_(2 * n + int(places_.members.size())),
-        directions_(Eigen::MatrixXd::Identity(count_, count_)),
-        time_by_(Eigen::RowVectorXd::Zero(count_)) {
-    members_.push_back(&system_.h);
-    if constexpr (TimeDependent<Sys>) members_.push_back(&system_.time);
+        asked_(2 * n + int(places_.members.size())) {
     for (const SmoothEvent<Sys>& event : events) {
       if (!event.function) throw std::invalid_argument("event \"" + event.name + "\": it has no function");
+      for (const auto& each : event.set) add_place(event, each.name);
       watches_.emplace_back(Event{.name = event.name, .direction = event.direction, .tolerance = event.tolerance});
       happened_.push_back(0);
       touched_.push_back(0);
     }
+    count_ = 2 * n + int(places_.members.size());
+    directions_ = Eigen::MatrixXd::Identity(count_, asked_);
+    time_by_ = Eigen::RowVectorXd::Zero(asked_);
+    members_ = places_.members;
+    members_.push_back(&system_.h);
+    if constexpr (TimeDependent<Sys>) members_.push_back(&system_.time);
+    is_compared_.assign(places_.members.size() + 1, 0);
   }
   EventPropagation(const EventPropagation&) = delete;  // derivatives know members by their places
   EventPropagation& operator=(const EventPropagation&) = delete;
 
   EventSensitivities run(long steps) {
-    out_.parameters = places_.names;
+    out_.parameters.assign(places_.names.begin(), places_.names.begin() + (asked_ - 2 * n));
     base_ = integrator_->point();
     for (std::size_t i = 0; i < events_.size(); ++i) watches_[i].next(value_at(i, base_), base_.time);
     if (observed_node_ == 0) observe_end();
@@ -150,6 +165,19 @@ template <DiscreteSystem Sys> class EventPropagation {
     double share;
     Passing passing;
   };
+
+  /// What is set varies, whether it is asked for or not.
+  void add_place(const SmoothEvent<Sys>& event, const std::string& name) {
+    if (place_of(name) < places_.names.size()) return;
+    const ParameterPlaces found = places_of_parameters(system_.plain(), {name});
+    if (found.names.front() != name)
+      throw std::invalid_argument("event \"" + event.name + "\": it sets " + name + ", which is no single number");
+    places_.names.push_back(name);
+    places_.members.push_back(found.members.front());
+  }
+  std::size_t place_of(const std::string& name) const {
+    return std::size_t(std::find(places_.names.begin(), places_.names.end(), name) - places_.names.begin());
+  }
 
   void fail(SolveStatus status, std::string why) {
     is_over_ = true;
@@ -190,22 +218,30 @@ template <DiscreteSystem Sys> class EventPropagation {
     set_time(system_.plain(), base_.time);
     LinearStep step(n + m, 2 * n, int(members_.size()));
     linearise_step(system_, Step<VaryingStep<Sys>>{to.step.arrow, to.step.multipliers}, members_, step);
-    // By its size, which a force may read as a plain number.
-    if (!std::exchange(is_compared_, true))
-      compare_with_differences(system_.plain(), system_.h, "h", to.step, step, count_);
+    compare_members(to.step, step);
     if (!step.factor()) throw StepReport{SolveStatus::singular};
     const int extra = int(members_.size() - places_.members.size());
-    Eigen::MatrixXd from = Eigen::MatrixXd::Zero(count_ + extra, count_ + 1);
-    from.topLeftCorner(count_, count_) = directions_;
+    Eigen::MatrixXd from = Eigen::MatrixXd::Zero(count_ + extra, asked_ + 1);
+    from.topLeftCorner(count_, asked_) = directions_;
     // Of a base that is an event the start depends on the directions, too.
-    if (extra > 1) from.row(count_ + 1).head(count_) = time_by_;
-    from(count_, count_) = 1;
+    if (extra > 1) from.row(count_ + 1).head(asked_) = time_by_;
+    from(count_, asked_) = 1;
     const Eigen::MatrixXd all = step.forward(from);
-    return {all.topLeftCorner(count_, count_), all.col(count_).head(2 * n)};
+    return {all.topLeftCorner(count_, asked_), all.col(asked_).head(2 * n)};
+  }
+  /// Once for each parameter that varies, and for the size of the step, which a force may read as a plain number.
+  void compare_members(const Step<Sys>& solved, const LinearStep& step) {
+    for (std::size_t j = 0; j < is_compared_.size(); ++j) {
+      const bool is_size = j == places_.members.size();
+      if (is_compared_[j] != 0 || (!is_size && directions_.row(2 * n + Eigen::Index(j)).isZero(0))) continue;
+      is_compared_[j] = 1;
+      compare_with_differences(system_.plain(), const_cast<double&>(*members_[j]),  // of the system, no constant
+                               is_size ? "h" : places_.names[j], solved, step, 2 * n + Eigen::Index(j));
+    }
   }
   void advance(long number) try {
     integrator_->keep_node();
-    kicks_ = 0;
+    changes_ = 0;
     const double begun = integrator_->point().time;
     const StepReport report = integrator_->advance();
     if (!report.converged()) throw report;
@@ -220,37 +256,39 @@ template <DiscreteSystem Sys> class EventPropagation {
                                                "\" is zero at the start, and what follows has no derivative there");
     }
     while (!suspects.empty() && !is_over_) {
-      if (kicks_ == most_changes_in_step)
-        return fail(SolveStatus::not_converged, "events follow their own kicks without end");
+      if (changes_ == most_changes_in_step)
+        return fail(SolveStatus::not_converged, "events follow their own changes without end");
       look_into_rest(std::exchange(suspects, {}), suspects);
     }
     if (is_over_) return;
     out_.steps = number;
     // A rest that is shorter is made with the next step.
-    if (kicks_ > 0 && node.time - base_.time < event_limits::shortest * (node.time - begun)) {
+    if (changes_ > 0 && node.time - base_.time < event_limits::shortest * (node.time - begun)) {
       if (number == observed_node_)
         fail(SolveStatus::singular,
-             "node " + std::to_string(number) + " is the time of a kick, where it has no derivative");
-      is_kicked_at_node_ = true;
+             "node " + std::to_string(number) + " is the time of a change, where it has no derivative");
+      is_changed_at_node_ = true;
       return;
     }
-    is_kicked_at_node_ = false;
-    // The rest of a step after a kick ends where the step does: what its start is late it is shorter.
-    Linearised step = linearise(kicks_ > 0 ? cut(1) : node);
+    is_changed_at_node_ = false;
+    // The rest of a step after a change ends where the step does: what its start is late it is shorter.
+    Linearised step = linearise(changes_ > 0 ? cut(1) : node);
     step.end.topRows(2 * n) -= step.by_duration * time_by_;
-    move_base(step, integrator_->point(), Eigen::RowVectorXd::Zero(count_));
+    move_base(step, integrator_->point(), Eigen::RowVectorXd::Zero(asked_));
     if (number == observed_node_) observe_end();
   } catch (const StepReport& report) {
     const std::string kicked =
-        ", after " + std::to_string(kicks_) + " kicks in it: an event that follows its own kick wants a direction";
+        ", after " + std::to_string(changes_) + " changes in it: an event that follows its own kick wants a direction";
     fail(report.status,
-         "step " + std::to_string(number) + ", or a part of it, did not converge" + (kicks_ > 0 ? kicked : ""));
+         "step " + std::to_string(number) + ", or a part of it, did not converge" + (changes_ > 0 ? kicked : ""));
   } catch (const NoNumber&) {
     fail(SolveStatus::left_domain, "step " + std::to_string(number) + ": the function of an event is no finite number");
   }
 
   /// Whether the motion depends on when it happens.
-  static bool decides(const SmoothEvent<Sys>& event) { return event.kick || event.then == Event::Then::stop; }
+  static bool decides(const SmoothEvent<Sys>& event) {
+    return event.changes_motion() || event.then == Event::Then::stop;
+  }
 
   void look_into_rest(const std::vector<std::size_t>& suspects, std::vector<std::size_t>& next) {
     std::vector<Found> found;
@@ -293,13 +331,14 @@ template <DiscreteSystem Sys> class EventPropagation {
     Linearised at = step;
     at.end.topRows(2 * n) += step.by_duration * duration_by;
     const Eigen::RowVectorXd time_by = time_by_ + duration_by;
-    out_.happened.push_back({found.event, inside.time, time_by.head(2 * n), time_by.tail(count_ - 2 * n), {}, {}, {}});
+    out_.happened.push_back({found.event, inside.time, time_by.head(2 * n), time_by.tail(asked_ - 2 * n), {}, {}, {}});
     auto& last = out_.happened.back();
     set_observed(inside, at.end, time_by, last.observed, last.observed_by_start, last.observed_by_parameters);
     ++happened_[found.event];
     const bool stops = event.then == Event::Then::stop && happened_[found.event] >= event.count;
-    if (event.kick) {
-      kick(found, inside, at, time_by);
+    if (event.changes_motion()) {
+      change(found, inside, at, time_by);
+      if (is_over_) return;
       const Point node = integrator_->point();
       for (std::size_t i = 0; i < events_.size(); ++i) {
         const auto passing = i == found.event ? std::optional(found.passing) : std::nullopt;
@@ -311,23 +350,49 @@ template <DiscreteSystem Sys> class EventPropagation {
     if (stops) is_over_ = out_.is_stopped = true;
   }
 
-  void kick(const Found& found, const Point& inside, const Linearised& at, const Eigen::RowVectorXd& time_by) {
-    const NodeValues k = observe(inside, events_[found.event].kick);
-    if (k.values.size() != n)
-      throw std::invalid_argument(named(found) + ": its kick has " + std::to_string(k.values.size()) +
-                                  " numbers, the momentum has " + std::to_string(n));
-    const AlgebroidVector<G> by = k.values;
-    if (!k.derivatives.allFinite())
-      return fail(SolveStatus::singular,
-                  "the kick of " + named(found) + " has no derivative at t = " + std::to_string(inside.time));
-    const StepReport report = integrator_->kick(found.share, by);
-    if (!report.converged()) throw report;
-    Linearised kicked = at;
-    kicked.end.middleRows(n, n) += k.derivatives.leftCols(count_) * at.end + k.derivatives.col(count_) * time_by;
+  /// Kicks, and sets parameters, both by what is there before.
+  void change(const Found& found, const Point& inside, const Linearised& at, const Eigen::RowVectorXd& time_by) {
+    const SmoothEvent<Sys>& event = events_[found.event];
+    Linearised changed = at;
     Point from = inside;
-    from.state.momentum += by;
-    move_base(kicked, from, time_by);
-    ++kicks_;
+    // f there, by the directions; where it has no derivative the run ends.
+    const auto along = [&](const auto& f, const std::string& what) -> NodeValues {
+      const NodeValues there = observe(inside, f);
+      if (!there.derivatives.allFinite())
+        fail(SolveStatus::singular,
+             what + " of " + named(found) + " has no derivative at t = " + std::to_string(inside.time));
+      return {there.values, there.derivatives.leftCols(count_) * at.end + there.derivatives.col(count_) * time_by};
+    };
+    std::vector<ParameterValue> to;
+    for (const auto& each : event.set) {
+      const NodeValues number = along(
+          [&](const EventNode<Sys>& node) -> VariedVector { return VariedVector::Constant(1, each.number(node)); },
+          "what is set (" + each.name + ")");
+      changed.end.row(2 * n + Eigen::Index(place_of(each.name))) = number.derivatives.row(0);
+      to.push_back({each.name, number.values(0)});
+    }
+    double share = found.share;
+    if (event.kick) {
+      const NodeValues k = along(event.kick, "the kick");
+      if (k.values.size() != n)
+        throw std::invalid_argument(named(found) + ": its kick has " + std::to_string(k.values.size()) +
+                                    " numbers, the momentum has " + std::to_string(n));
+      const AlgebroidVector<G> by = k.values;
+      changed.end.middleRows(n, n) += k.derivatives;
+      from.state.momentum += by;
+      if (!is_over_) require(integrator_->kick(std::exchange(share, 0), by));
+    }
+    if (!is_over_ && !to.empty()) {
+      if (const std::string why = set_parameters(system_.plain(), to); !why.empty())
+        return fail(SolveStatus::left_domain, named(found) + ": at t = " + std::to_string(inside.time) + " " + why);
+      require(integrator_->change(share, [&to](Sys& system) { set_parameters(system, to); }));
+    }
+    if (is_over_) return;
+    move_base(changed, from, time_by);
+    ++changes_;
+  }
+  static void require(const StepReport& report) {
+    if (!report.converged()) throw report;
   }
 
   void move_base(const Linearised& step, const Point& to, const Eigen::RowVectorXd& time_by) {
@@ -347,7 +412,7 @@ template <DiscreteSystem Sys> class EventPropagation {
     const Eigen::MatrixXd by = here.derivatives.leftCols(count_) * directions + here.derivatives.col(count_) * time_by;
     values = here.values;
     by_start = by.leftCols(2 * n);
-    by_parameters = by.rightCols(count_ - 2 * n);
+    by_parameters = by.rightCols(asked_ - 2 * n);
   }
   void observe_end() {
     set_observed(base_, directions_, time_by_, out_.observed, out_.observed_by_start, out_.observed_by_parameters);
@@ -355,26 +420,27 @@ template <DiscreteSystem Sys> class EventPropagation {
 
   void finish() {
     out_.growth = growth_.largest();
-    if (is_kicked_at_node_ && !out_.is_stopped)
-      return fail(SolveStatus::singular, "the end is the time of a kick, where it has no derivative");
+    if (is_changed_at_node_ && !out_.is_stopped)
+      return fail(SolveStatus::singular, "the end is the time of a change, where it has no derivative");
     if (observed_node_ < 0) observe_end();
     const NodeValues momentum = observe(base_, [](const EventNode<Sys>& node) { return VariedVector(node.momentum); });
     Eigen::MatrixXd end = directions_.topRows(2 * n);
     end.bottomRows(n) = momentum.derivatives.leftCols(count_) * directions_;
     out_.time = base_.time;
     out_.by_start = end.leftCols(2 * n);
-    out_.by_parameters = end.rightCols(count_ - 2 * n);
+    out_.by_parameters = end.rightCols(asked_ - 2 * n);
   }
 
   VaryingStep<Sys> system_;
   std::unique_ptr<Integrator<Sys>> integrator_;
   const std::vector<SmoothEvent<Sys>>& events_;
   ObserveEventNode<Sys> observe_;
-  long observed_node_;  ///< -1: the end
-  ParameterPlaces places_;
+  long observed_node_;                  ///< -1: the end
+  ParameterPlaces places_;              ///< those that are asked for, and then others that events set
   std::vector<const double*> members_;  ///< and the step's size, and its start
-  int count_;                           ///< directions: (v, mu, theta)
-  Eigen::MatrixXd directions_;          ///< at the base
+  int asked_;                           ///< of (v, mu, theta) at the start
+  int count_ = 0;                       ///< of (v, mu, theta) on the way, all that vary
+  Eigen::MatrixXd directions_;          ///< at the base: these by those
   Growth growth_{Eigen::MatrixXd::Identity(2 * n, 2 * n)};
   Eigen::RowVectorXd time_by_;  ///< of the base's time
   Point base_;                  ///< from which the rest of the step is made
@@ -382,10 +448,10 @@ template <DiscreteSystem Sys> class EventPropagation {
   std::vector<long> happened_;
   std::vector<long> touched_;  ///< by events that only record
   EventSensitivities out_;
-  int kicks_ = 0;                   ///< in this step
-  bool is_kicked_at_node_ = false;  ///< and its rest is to be made with the next step
+  int changes_ = 0;                  ///< in this step
+  bool is_changed_at_node_ = false;  ///< and its rest is to be made with the next step
   bool is_over_ = false;
-  bool is_compared_ = false;
+  std::vector<char> is_compared_;  ///< which members are as differences of a step say
 };
 
 }  // namespace detail

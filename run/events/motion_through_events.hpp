@@ -76,10 +76,12 @@ class MotionThroughEvents final : public LinearisedMotion {
 
   /// All of a run: along so many directions, columns of (v, mu, theta), what is observed where events happen, and at a
   /// node or, for -1, at the end, which an event may be. The last of the directions, as many as there are parameters,
-  /// are those of these, the others of the start; where there are none, values alone are found. An event that has no
-  /// derivative ends it with the status `singular`; one whose function is zero at the start has one where it stays zero
-  /// along all directions.
+  /// are those of these, the others of the start, along which it begins; where there are none, values alone are found.
+  /// An event that has no derivative ends it with the status `singular`.
   EventSensitivities run(long steps, const Eigen::MatrixXd& directions, long node = -1);
+  /// Before the first step, along which directions of (v, mu, theta) it is asked for: an event whose function is zero
+  /// at the start has a derivative where it stays zero along all of them. Without it none has.
+  void begin_along(const Eigen::MatrixXd& directions);
 
  private:
   /// A part of a step, to where something happened.
@@ -124,8 +126,6 @@ class MotionThroughEvents final : public LinearisedMotion {
   /// f(t, seen) by (states, theta, t), where the motion is.
   NodeValues along(const NodeValues& seen, const std::function<VariedVector(const VariedVector&)>& f) const;
   NodeValues function_by(std::size_t event, const NodeValues& seen) const;
-  /// Whose functions stay what they are at the start, along these directions.
-  void see_start(const Eigen::MatrixXd& directions);
 
   // Rows of the directions of a part.
   Eigen::Index time_row() const { return states() + parameters(); }

@@ -65,7 +65,7 @@ NodeValues MotionThroughEvents::function_by(std::size_t event, const NodeValues&
   });
 }
 
-void MotionThroughEvents::see_start(const Eigen::MatrixXd& directions) {
+void MotionThroughEvents::begin_along(const Eigen::MatrixXd& directions) {
   constexpr double rounding = 1e-12;
   NodeValues seen = motion_->observe();
   seen.derivatives.conservativeResize(Eigen::NoChange, time_row() + 1);
@@ -260,7 +260,7 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
     see_node();
   };
   try {
-    see_start(directions);
+    begin_along(directions);
     if (node == 0) see_node();
     for (long k = 1; k <= steps && !is_over_; ++k) {
       const double begun = time();

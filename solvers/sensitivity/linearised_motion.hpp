@@ -14,8 +14,10 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -24,6 +26,12 @@ namespace lagroid {
 struct NodeValues {
   Eigen::VectorXd values;
   Eigen::MatrixXd derivatives;
+};
+
+/// A node of a motion, kept in a form of the motion's own.
+class KeptNode {
+ public:
+  virtual ~KeptNode() = default;
 };
 
 class LinearisedMotion {
@@ -51,6 +59,18 @@ class LinearisedMotion {
   /// node. None where that step has no root, or where the motion has no such steps.
   virtual std::optional<NodeValues> observe_later(double /*time*/) { return std::nullopt; }
 
+  /// One step that is not going to be linearised.
+  virtual StepReport pass() { return advance(); }
+  /// Keeps the present node, in memory that one kept earlier may have left.
+  virtual void keep_node(std::unique_ptr<KeptNode>& node) { node = std::make_unique<KeptNumbers>(save()); }
+  /// Goes on from a node that this motion kept, with the same bits.
+  virtual void return_to(const KeptNode& node) { restore(static_cast<const KeptNumbers&>(node).numbers); }
+  /// The gradients of functions of the node `after`, by the state and theta, become those of the node before it, without
+  /// making the step between them again. Where this motion cannot do that, they stay and false is returned.
+  virtual bool take_back(const KeptNode& /*before*/, const KeptNode& /*after*/, Eigen::MatrixXd& /*gradients*/) {
+    return false;
+  }
+
   /// Visits all that the next step goes on from.
   virtual void serialize(NumberArchive& archive) = 0;
   /// Its numbers, and back to them: the steps from there have the same bits.
@@ -63,6 +83,12 @@ class LinearisedMotion {
     NumberArchive archive(saved);
     serialize(archive);
   }
+
+ private:
+  struct KeptNumbers final : KeptNode {
+    explicit KeptNumbers(std::vector<double> all) : numbers(std::move(all)) {}
+    std::vector<double> numbers;
+  };
 };
 
 }  // namespace lagroid

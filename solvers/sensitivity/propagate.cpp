@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -54,22 +56,23 @@ std::string failure(const StepReport& report, double time) {
   return fmt::format("the step at t = {:.6g} failed: {}", time, to_string(report.status));
 }
 
-/// Goes on by steps until one fails, of which it takes down the reason.
+/// Takes down what a step is like that begins at this time; whether it converged.
+bool note(const StepReport& report, double time, Propagated& out) {
+  ++out.steps_solved;
+  if (report.converged()) return true;
+  out.status = report.status;
+  out.message = failure(report, time);
+  return false;
+}
+/// Goes on by steps until one fails.
 bool advance(LinearisedMotion& motion, long steps, Propagated& out) {
-  for (long k = 0; k < steps; ++k) {
-    const double time = motion.time();
-    const StepReport report = motion.advance();
-    ++out.steps_solved;
-    if (report.converged()) continue;
-    out.status = report.status;
-    out.message = failure(report, time);
-    return false;
-  }
+  for (long k = 0; k < steps; ++k)
+    if (const double time = motion.time(); !note(motion.pass(), time, out)) return false;
   return true;
 }
 /// One step, linearised.
 bool advance_linearised(LinearisedMotion& motion, Propagated& out) {
-  if (!advance(motion, 1, out)) return false;
+  if (const double time = motion.time(); !note(motion.advance(), time, out)) return false;
   if (motion.linearise()) return true;
   out.status = SolveStatus::singular;
   out.message = fmt::format("the step before t = {:.6g} has no derivative: its equations are singular", motion.time());
@@ -94,33 +97,37 @@ Eigen::MatrixXd matrix_of_the_step(const LinearisedMotion& motion) {
   return out.topRows(motion.states());
 }
 
-/// The motion in reverse, from states kept on the way.
+/// The motion in reverse, from nodes kept on the way. Where the present step ends is kept beside them, so that a motion
+/// can take gradients back over it without making it again.
 class Reversal {
  public:
   Reversal(LinearisedMotion& motion, long steps, const Observed& observed, double duration, Propagated& out)
       : motion_(motion), steps_(steps), observed_(observed), duration_(duration), out_(out) {}
 
-  /// The steps from `from` to `to`; `start` is the state at `from`, and as many more may be kept.
-  bool reverse(long from, long to, const std::vector<double>& start, long more) {
+  /// The steps from `from` to `to`; `start` is the node at `from`, and as many more may be kept.
+  bool reverse(long from, long to, const KeptNode& start, long more) {
     while (to - from > 1) {
       if (more == 0) {
         for (; to - from > 1; --to) {
-          motion_.restore(start);
-          if (!advance(motion_, to - from - 1, out_) || !step(to - 1)) return false;
+          if (!go(from, to - 1, start)) return false;
+          motion_.keep_node(last_);
+          if (!step(to - 1, *last_)) return false;
+          std::swap(last_, end_);
         }
         break;
       }
       const long middle = from + first_part(to - from, more + 1);
-      motion_.restore(start);
-      if (!advance(motion_, middle - from, out_)) return false;
-      const std::vector<double> kept = motion_.save();
+      if (!go(from, middle, start)) return false;
+      std::unique_ptr<KeptNode> kept = spare();
+      motion_.keep_node(kept);
       out_.states_kept = std::max(out_.states_kept, ++kept_);
-      if (!reverse(middle, to, kept, more - 1)) return false;
+      if (!reverse(middle, to, *kept, more - 1)) return false;
       --kept_;
+      std::swap(kept, end_);
+      if (kept) spare_.push_back(std::move(kept));
       to = middle;
     }
-    motion_.restore(start);
-    return step(from);
+    return step(from, start);
   }
 
   /// What is observed at the present node is added.
@@ -143,14 +150,39 @@ class Reversal {
   double growth() const { return largest_ratio(first_, peak_, units_.of(first_.rows())); }
 
  private:
-  bool step(long from) {
-    if (!advance_linearised(motion_, out_)) return false;
-    observe(from + 1);
-    if (gradients_.size() == 0) return true;
-    for (int k = motion_.stages(); k-- > 0;) gradients_ = motion_.stage(k).backward(gradients_);
+  /// The motion stands at `from`, or returns there, and goes on to `to`.
+  bool go(long from, long to, const KeptNode& start) {
+    if (at_ != from) motion_.return_to(start);
+    at_ = to;
+    return advance(motion_, to - from, out_);
+  }
+  /// The step after `from` is made again, to be linearised.
+  bool make(long from, const KeptNode& start) {
+    if (at_ != from) motion_.return_to(start);
+    at_ = from + 1;
+    return advance_linearised(motion_, out_);
+  }
+  /// The gradients go back over the step after `from`.
+  bool step(long from, const KeptNode& start) {
+    const bool is_observed = weight_of(observed_, from + 1, steps_, duration_) != 0;
+    const bool nothing_yet = !is_observed && gradients_.size() == 0;
+    const bool wants_matrix = !nothing_yet && units_.wants_matrix();
+    if (nothing_yet || is_observed || wants_matrix || !motion_.take_back(start, *end_, gradients_)) {
+      if (!make(from, start)) return false;
+      observe(from + 1);
+      if (gradients_.size() == 0) return true;
+      for (int k = motion_.stages(); k-- > 0;) gradients_ = motion_.stage(k).backward(gradients_);
+      if (wants_matrix) units_.see(matrix_of_the_step(motion_));
+    }
     peak_ = peak_.cwiseMax(gradients_.topRows(motion_.states()).cwiseAbs());
-    if (units_.wants_matrix()) units_.see(matrix_of_the_step(motion_));
     return true;
+  }
+  /// A node's memory that is not in use, if there is any.
+  std::unique_ptr<KeptNode> spare() {
+    if (spare_.empty()) return nullptr;
+    std::unique_ptr<KeptNode> out = std::move(spare_.back());
+    spare_.pop_back();
+    return out;
   }
 
   LinearisedMotion& motion_;
@@ -159,6 +191,10 @@ class Reversal {
   double duration_;
   Propagated& out_;
   long kept_ = 1;
+  long at_ = 0;                     ///< the node where the motion stands
+  std::unique_ptr<KeptNode> end_;   ///< where the present step ends; none of the last step of all
+  std::unique_ptr<KeptNode> last_;  ///< where it begins, between nodes kept on the way
+  std::vector<std::unique_ptr<KeptNode>> spare_;
   Eigen::MatrixXd gradients_;
   Eigen::MatrixXd first_;  ///< the largest that they were where something was observed, entry by entry
   Eigen::MatrixXd peak_;   ///< and anywhere
@@ -212,12 +248,13 @@ Propagated propagate_backward(LinearisedMotion& motion, long steps, const Observ
   Propagated out;
   out.states_kept = 1;
   if (budget.states == 0) budget.states = long(std::ceil(2 * std::sqrt(double(steps))));
-  const std::vector<double> start = motion.save();
+  std::unique_ptr<KeptNode> start;
+  motion.keep_node(start);
   const double duration = duration_of(motion, steps, observed, out);
   if (!out.converged()) return out;
   Reversal reversal(motion, steps, observed, duration, out);
-  if (steps > 0 && !reversal.reverse(0, steps, start, std::max(0L, budget.states - 1))) return out;
-  motion.restore(start);
+  if (steps > 0 && !reversal.reverse(0, steps, *start, std::max(0L, budget.states - 1))) return out;
+  motion.return_to(*start);
   reversal.observe(0);
   out.growth = reversal.growth();
   out.derivatives = reversal.gradients().transpose();

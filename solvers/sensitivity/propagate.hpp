@@ -3,7 +3,8 @@
 ///
 /// Forward costs by the number of directions; backward by the number of functions, whatever the number of parameters,
 /// and wants the steps in reverse. They are computed again from states kept on the way: with s states, a motion of
-/// N <= binomial(s + r, s) steps is repeated r times.
+/// N <= binomial(s + r, s) steps is repeated r times, and once more where gradients cannot be taken back over a step
+/// between its two nodes (`LinearisedMotion::take_back`).
 ///
 ///     const Propagated end = propagate_forward(motion, 1000, directions);
 ///     const Propagated start = propagate_backward(motion, 1000, Observed::at_end(), {.states = 20});
@@ -32,7 +33,8 @@ struct Observed {
   static Observed integral() { return {Kind::integral, -1}; }
 };
 
-/// What the backward direction may keep: a number of states, or 0 for 2 sqrt(N).
+/// What the backward direction may keep on the way: a number of states, or 0 for 2 sqrt(N). The two ends of the step
+/// that it is at are beside them.
 struct StateBudget {
   long states = 0;
   /// Of the order of log N, at which a motion of N steps is repeated some four times.

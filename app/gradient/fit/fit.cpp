@@ -156,6 +156,7 @@ Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& fi
   fit.system = subject.system;
   fit.runs = files.size();
   const GradientColumns columns = columns_of(subject, options.unknowns);
+  fit.notes = notes_on_left_out(subject, columns);
   std::vector<MeasuredRun> measured = read_measured(subject, files, options, fit);
   const std::vector<Guessed> unknowns = unknowns_of(subject, columns, files.size(), options, fit);
   for (const auto& bound : options.bounds)
@@ -185,7 +186,7 @@ Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& fi
   }
   if (at_best.empty()) {
     best.status = "failed";
-    best.failure = options.starts == 1 && !own_failure.empty() ? own_failure : "no run from any guess came to its end";
+    best.failure = own_failure.empty() ? "no run from any guess came to its end" : own_failure;
     return best;
   }
   std::sort(costs.begin(), costs.end());

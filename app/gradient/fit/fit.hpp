@@ -90,6 +90,7 @@ struct Fit {
   std::vector<Point> points;
   std::vector<double> other_costs;   ///< of the other guesses, least first
   std::vector<std::string> ignored;  ///< columns of the data that nothing is known of
+  std::vector<std::string> notes;    ///< on numbers that are not fitted, as they have no derivative
 
   bool converged() const { return status == "converged"; }
 };

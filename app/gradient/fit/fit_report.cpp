@@ -68,6 +68,7 @@ std::string text_of(const Fit& fit) {
                        : each.white ? "as independent errors do"
                                     : "not as independent errors do, the model is another or the errors are");
   if (!fit.ignored.empty()) out += fmt::format("  ignored, no columns of the run: {}\n", fmt::join(fit.ignored, ", "));
+  for (const std::string& note : fit.notes) out += fmt::format("  note: {}\n", note);
   if (!fit.other_costs.empty())
     out += fmt::format("  cost {:.6g}; from other guesses {:.6g}\n", fit.cost, fmt::join(fit.other_costs, ", "));
   return out;
@@ -107,6 +108,7 @@ std::string json_of(const Fit& fit) {
                               {"correlation", each.correlation},
                               {"white", each.white}});
   out["ignored"] = fit.ignored;
+  if (!fit.notes.empty()) out["notes"] = fit.notes;
   return out.dump(2);
 }
 

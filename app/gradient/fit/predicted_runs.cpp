@@ -16,7 +16,9 @@ namespace lagroid::app {
 class PredictedRuns::Course {
  public:
   Course(std::unique_ptr<LinearisedMotion> motion, Eigen::MatrixXd directions)
-      : motion_(std::move(motion)), directions_(std::move(directions)) {}
+      : motion_(std::move(motion)), directions_(std::move(directions)) {
+    if (auto* through = dynamic_cast<MotionThroughEvents*>(motion_.get())) through->begin_along(directions_);
+  }
 
   const LinearisedMotion& motion() const { return *motion_; }
   const Eigen::MatrixXd& directions() const { return directions_; }

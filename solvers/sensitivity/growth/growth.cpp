@@ -58,16 +58,18 @@ Eigen::VectorXd OwnUnits::of(Eigen::Index components) const {
         coupling(i, j) += back * double(seen_) / sum_(j, i);
   coupling.diagonal().setZero();
   const Eigen::MatrixXd rows = coupling.transpose();
+  Eigen::VectorXd inverses = units;
   constexpr int most_sweeps = 200;
   constexpr double settled = 1e-3;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double change = 0;
     for (Eigen::Index i = 0; i < components; ++i) {
       const double row = rows.col(i).dot(units) / units(i);
-      const double column = coupling.col(i).dot(units.cwiseInverse()) * units(i);
+      const double column = coupling.col(i).dot(inverses) * units(i);
       const double factor = std::sqrt(row / column);
       if (!(factor > 0 && std::isfinite(factor))) continue;
       units(i) *= factor;
+      inverses(i) = 1 / units(i);
       change = std::max(change, std::abs(std::log(factor)));
     }
     if (change < settled) break;

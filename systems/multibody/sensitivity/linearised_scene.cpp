@@ -29,6 +29,7 @@ LinearisedScene::LinearisedScene(Multibody motion, std::vector<std::string> name
     throw std::invalid_argument("steps are controlled: their derivatives are those of LinearisedControlledScene");
   if (before_.stages.size() != (stages_ ? stages_->shares.size() : 0))
     throw std::invalid_argument("composed steps are linearised stage by stage: give these");
+  if (SceneAdjoint::is_of(motion_)) adjoint_.emplace(numbers_, write_);
   left_out_ = variations().sizes().left_out;
   start_ = variations().start(names_, numbers_);
   begin_.end_by_start.leftCols(states()).setIdentity();
@@ -104,6 +105,40 @@ NodeValues LinearisedScene::observe() const {
 }
 
 void LinearisedScene::serialize(NumberArchive& archive) { motion_.serialize(archive); }
+
+namespace {
+
+/// As it stands, without the detour through a list of numbers.
+struct KeptScene final : KeptNode {
+  SceneState state;
+};
+
+}  // namespace
+
+void LinearisedScene::keep_node(std::unique_ptr<KeptNode>& node) {
+  if (!adjoint_) {
+    CuttableMotion::keep_node(node);
+    return;
+  }
+  if (!node) node = std::make_unique<KeptScene>();
+  static_cast<KeptScene&>(*node).state = motion_.state();
+}
+
+void LinearisedScene::return_to(const KeptNode& node) {
+  if (adjoint_) {
+    motion_.restore(static_cast<const KeptScene&>(node).state);
+  } else {
+    CuttableMotion::return_to(node);
+  }
+}
+
+bool LinearisedScene::take_back(const KeptNode& before, const KeptNode& after, Eigen::MatrixXd& gradients) {
+  if (!adjoint_) return false;
+  const SceneState& start = static_cast<const KeptScene&>(before).state;
+  if (!adjoint_->take_back(motion_, start, static_cast<const KeptScene&>(after).state, gradients)) return false;
+  if (start.index == 0 && parameters() > 0) gradients = begin_.backward(gradients);
+  return true;
+}
 
 namespace {
 

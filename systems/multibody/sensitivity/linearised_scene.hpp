@@ -29,11 +29,13 @@
 
 #include <lagroid/solvers/sensitivity/times/cuttable_motion.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
+#include <lagroid/systems/multibody/sensitivity/scene_adjoint.hpp>
 #include <lagroid/systems/multibody/sensitivity/scene_variations.hpp>
 
 #include <Eigen/Core>
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,6 +67,11 @@ class LinearisedScene final : public CuttableMotion {
   const StepDerivative& stage(int k) const override;
   NodeValues observe() const override;
   void serialize(NumberArchive& archive) override;
+
+  StepReport pass() override { return motion_.advance(); }
+  void keep_node(std::unique_ptr<KeptNode>& node) override;
+  void return_to(const KeptNode& node) override;
+  bool take_back(const KeptNode& before, const KeptNode& after, Eigen::MatrixXd& gradients) override;
 
   void keep() override { kept_ = motion_.state(); }
   StepReport go(double duration) override;
@@ -105,6 +112,7 @@ class LinearisedScene final : public CuttableMotion {
   std::vector<Vec> displacements_;                                   ///< of that step
   std::vector<std::optional<SparseStep>> linear_;                    ///< of the stages
   std::optional<Stages> stages_;
+  std::optional<SceneAdjoint> adjoint_;  ///< of scenes that have one
   std::vector<int> left_out_;  ///< rows, at the start
   Eigen::MatrixXd start_;
   LinearStep begin_;     ///< (v, mu, theta) of the start, by displacements of it and theta

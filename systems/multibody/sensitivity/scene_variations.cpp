@@ -9,15 +9,14 @@
 
 namespace lagroid::multibody {
 
-namespace {
-
-/// The numbers, those from `first` on varied.
 std::vector<VariedNumber> varied_from(const std::vector<double>& numbers, int first) {
   std::vector<VariedNumber> out(numbers.begin(), numbers.end());
   for (int k = std::max(0, first); k < std::min(int(numbers.size()), first + varied_at_once); ++k)
     out[std::size_t(k)] = VariedNumber::variable(numbers[std::size_t(k)], k - first);
   return out;
 }
+
+namespace {
 
 /// Of the numbers by which a scene is varied, those by which its joints would not hold at the start.
 std::vector<int> torn_in(VariedScene& scene, const SceneSizes& sizes, const std::vector<double>& numbers, int first) {

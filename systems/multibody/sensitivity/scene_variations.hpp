@@ -24,6 +24,9 @@
 
 namespace lagroid::multibody {
 
+/// The numbers, a few from `first` on varied in directions of their own.
+std::vector<VariedNumber> varied_from(const std::vector<double>& numbers, int first);
+
 class SceneVariations {
  public:
   SceneVariations(const Multibody& motion, const std::vector<double>& numbers, const WriteScene& write);

@@ -167,6 +167,115 @@ TEST(EventSensitivities, AreWhatDifferencesTendTo) {
   }
 }
 
+/// Under another gravity below a height, which depends on when it comes there and how fast; by the formula of
+/// parabolas.
+TEST(EventSensitivities, OfWhatIsSetOnTheWayAreThoseOfTheFormula) {
+  Ball ball;
+  ball.h = 0.11;
+  SmoothEvent<Ball> below{"below", [](const EventNode<Ball>& node) { return node.object(0) - 0.5; }};
+  below.direction = Event::Direction::falling;
+  const auto gravity_of = [](const auto& time, const auto& momentum) { return time * 0.7 - momentum * 0.4 + 1.0; };
+  below.set = {{"gravity",
+                [&](const EventNode<Ball>& node) -> VariedNumber { return gravity_of(node.time, node.momentum(0)); }}};
+  const double q = 0.5, v = 0.3, g = 2, root = std::sqrt(v * v + 2 * g * q), t = (v + root) / g, rest = 17 * 0.11 - t;
+  const Eigen::RowVector3d by_root(g / root, v / root, q / root);
+  const Eigen::RowVector3d by_t(1 / root, (1 + v / root) / g, q / root / g - t / g);
+  const double other = gravity_of(t, -root);
+  const Eigen::RowVector3d by_other = 0.7 * by_t + 0.4 * by_root;
+  // 0.5 - root (T - t) - g' (T - t)^2 / 2, momentum -root - g' (T - t).
+  Eigen::Matrix<double, 2, 3> exact;
+  exact << (root + other * rest) * by_t - rest * by_root - rest * rest / 2 * by_other,
+      other * by_t - by_root - rest * by_other;
+  const EventSensitivities end =
+      event_sensitivities(ball, thrown, Events{below}, {.steps = 17, .parameters = {"gravity"}});
+  ASSERT_TRUE(end.converged()) << end.message;
+  ASSERT_EQ(end.happened.size(), 1u);
+  ASSERT_EQ(end.by_parameters.cols(), 1);
+  EXPECT_LT((end.by_start - exact.leftCols<2>()).norm(), 1e-11);
+  EXPECT_LT((end.by_parameters - exact.rightCols<1>()).norm(), 1e-11);
+  // Whether its gravity is asked for is all the same to the start.
+  const EventSensitivities start = event_sensitivities(ball, thrown, Events{below}, {.steps = 17});
+  ASSERT_TRUE(start.converged()) << start.message;
+  EXPECT_EQ(start.by_parameters.cols(), 0);
+  EXPECT_LT((start.by_start - end.by_start).norm(), 1e-13);
+  // The same number, as one that depends on nothing, misses them.
+  below.set[0].number = [other](const EventNode<Ball>&) { return VariedNumber(other); };
+  const EventSensitivities held = event_sensitivities(ball, thrown, Events{below}, {.steps = 17});
+  ASSERT_TRUE(held.converged()) << held.message;
+  EXPECT_GT((held.by_start - end.by_start).norm(), 0.1);
+}
+
+TEST(EventSensitivities, OfWhatIsSetAndKickedAreWhatDifferencesTendTo) {
+  // A wall makes the spring that pulls the bob back another one at each blow.
+  SmoothEvent<Bob> wall{"wall", [](const EventNode<Bob>& node) { return node.object(0) + 0.2; }};
+  wall.direction = Event::Direction::falling;
+  wall.kick = [](const EventNode<Bob>& node) {
+    VariedVector by(2);
+    by << node.momentum(0) * -1.9, node.object(1) * 0.1;
+    return by;
+  };
+  wall.set = {{"stiffness", [](const EventNode<Bob>& node) -> VariedNumber {
+                 return node.momentum(0) * node.momentum(0) * 0.5 + node.object(1) * 0.3 + node.time * 0.1 + 2.0;
+               }}};
+  const auto run = [&](const Eigen::VectorXd& x) {
+    Bob bob;
+    bob.h = 0.07;
+    bob.stiffness = x(4);
+    return event_sensitivities(bob, {x.head<2>(), x.segment<2>(2)}, std::vector{wall},
+                               {.steps = 150, .parameters = {"stiffness"}});
+  };
+  Eigen::VectorXd x(5);
+  x << 0.6, -0.5, -0.4, 0.2, 3;
+  const EventSensitivities at = run(x);
+  ASSERT_TRUE(at.converged()) << at.message;
+  ASSERT_GE(at.happened.size(), 2u);
+  for (int i = 0; i < 5; ++i)
+    for (const std::size_t which : {0u, 1u}) {
+      const auto difference = [&](double by) {
+        const Eigen::VectorXd step = Eigen::VectorXd::Unit(5, i) * by;
+        return (run(x + step).happened.at(which).time - run(x - step).happened.at(which).time) / (2 * by);
+      };
+      const double limit = (4 * difference(1e-4) - difference(2e-4)) / 3;
+      const double exact = i < 4 ? at.happened[which].by_start(i) : at.happened[which].by_parameters(0);
+      EXPECT_NEAR(exact, limit, 1e-8 * (1 + std::abs(limit))) << i << ", " << which;
+    }
+}
+
+/// It reads its gravity as a plain number.
+struct PlainBall : MechanicalSystem<PlainBall, 1> {
+  double gravity = 2;
+  Vector<double, 2> winds{0, 0};
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 1>& q) const { return q(0) * gravity; }
+  static auto parameters() {
+    return std::tuple(parameter("gravity", &PlainBall::gravity, "m/s^2", "acceleration", positive),
+                      parameter("winds", &PlainBall::winds, "m/s", "that blow from nowhere"));
+  }
+};
+
+TEST(EventSensitivities, OfPlainNumbersAreRefusedWhereTheyVary) {
+  PlainBall ball;
+  ball.h = 0.11;
+  using Node = EventNode<PlainBall>;
+  SmoothEvent<PlainBall> below{"below", [](const Node& node) { return node.object(0) - 0.5; }};
+  const auto run = [&](const std::vector<std::string>& parameters = {}) {
+    return event_sensitivities(ball, thrown, std::vector{below}, {.steps = 17, .parameters = parameters});
+  };
+  EXPECT_THROW(run({"gravity"}), WithoutDerivative);
+  below.set = {{"gravity", [](const Node&) { return VariedNumber(1.5); }}};
+  EXPECT_TRUE(run().converged());  // a number that depends on nothing
+  below.set[0].number = [](const Node& node) -> VariedNumber { return node.time * 0.1 + 1.5; };
+  EXPECT_THROW(run(), WithoutDerivative);
+  below.set[0].number = [](const Node&) { return VariedNumber(-1); };
+  const EventSensitivities negative = run();
+  EXPECT_EQ(negative.status, SolveStatus::left_domain);
+  EXPECT_NE(negative.message.find("gravity becomes -1, and is to be positive"), std::string::npos) << negative.message;
+  for (const char* name : {"winds", "mass"}) {
+    below.set[0].name = name;
+    EXPECT_THROW(run(), std::invalid_argument) << name;
+  }
+}
+
 /// A stop at the bottom that throws the bob back: of a pendulum, the times of its first two blows by its start and a
 /// parameter beside differences of runs.
 template <class Sys> void compare_with_differences(double Sys::*member, const std::string& name) {
