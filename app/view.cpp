@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr std::array<const char*, 1> pages{"view.html"};
+constexpr std::array<const char*, 1> kept_pages{"view.html"};
 
 fs::path file_of_run(const std::string& run, const char* name) {
   const fs::path folder(run);
@@ -210,7 +210,7 @@ fs::path write_view(const ViewOptions& options) {
       from_summary(options.run, [&](const OrderedJson& summary) { return in_script(data_of_page(summary, options)); });
   const std::string page =
       filled(viewer::page(), {{"@STYLE@", viewer::style()}, {"@RUN@", data}, {"@PROGRAM@", viewer::program()}});
-  return write_whole(options.run, pages,
+  return write_whole(options.run, kept_pages,
                      [&](const fs::path& staging) {
                        write_text(page, staging / "view.html");
                        return std::vector<std::string>{"view.html"};

@@ -159,7 +159,7 @@ std::string model_csv(const SweepCosts& costs) {
   return out;
 }
 
-std::string figures() {
+std::string scaling_figures() {
   std::string out =
       "# Draws model.csv; run by lagroid, or by hand: gnuplot figures.gp\nset datafile separator ','\nset grid\n"
       "set terminal svg size 720,480 background 'white' noenhanced\nset output 'efficiency.svg'\nset logscale x\n"
@@ -210,7 +210,7 @@ std::vector<fs::path> write_sweep_scaling(const SweepCosts& costs, const std::st
                                           std::string& note) {
   const auto data = [&](const fs::path& staging) {
     write_text(model_csv(costs), staging / "model.csv");
-    write_text(figures(), staging / "figures.gp");
+    write_text(scaling_figures(), staging / "figures.gp");
     return std::vector<std::string>{"model.csv", "figures.gp"};
   };
   return write_and_draw(folder, sweep_scaling_files, data, {"figures.gp", {"efficiency.svg"}}, note,

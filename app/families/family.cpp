@@ -23,15 +23,15 @@ void SceneFamily::refuse(const Section& scene) const {
 
 namespace {
 
-std::vector<const SceneFamily*>& known() {
+std::vector<const SceneFamily*>& known_families() {
   static std::vector<const SceneFamily*> families;
   return families;
 }
 
 }  // namespace
 
-std::span<const SceneFamily* const> families() { return known(); }
-void use_families(std::vector<const SceneFamily*> families) { known() = std::move(families); }
+std::span<const SceneFamily* const> families() { return known_families(); }
+void use_families(std::vector<const SceneFamily*> families) { known_families() = std::move(families); }
 
 const SceneFamily& family_of(const Section& scene) {
   const auto all = families();

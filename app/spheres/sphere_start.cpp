@@ -10,7 +10,7 @@ namespace lagroid::app {
 
 namespace {
 
-using Spheres = CotangentSpheres<Eigen::Dynamic>;
+using AnySpheres = CotangentSpheres<Eigen::Dynamic>;
 using Points = SphereIntegrator::Points;
 using V = Vector<double, 3>;
 
@@ -133,7 +133,7 @@ Points read_start(const Section& scene, const SphereSystem& system, SphereForm f
     read_key(initial, project_velocities);
   }
   Points z(6, count);
-  for (int i = 0; i < count; ++i) Spheres::set(z, i, q[std::size_t(i)], moving[std::size_t(i)]);
+  for (int i = 0; i < count; ++i) AnySpheres::set(z, i, q[std::size_t(i)], moving[std::size_t(i)]);
   z = system.in_form(z, given, form);
   const auto measured = system.measure(z, form);
   const auto finite = [](const Measured& m) { return std::isfinite(m.value) && std::isfinite(m.size); };

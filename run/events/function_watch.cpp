@@ -9,7 +9,7 @@ namespace lagroid {
 namespace {
 
 /// Of the change over a step: what cannot be told from zero at its end.
-constexpr double round_off = 1e-12;
+constexpr double rounding_of_values = 1e-12;
 constexpr double tiny = std::numeric_limits<double>::min();
 
 }  // namespace
@@ -42,7 +42,7 @@ bool FunctionWatch::next(double value, double time) {
   if (std::isnan(now_) || std::isnan(before_)) return false;
   if (at_ != Event::At::zero) return may_turn();
   const double step = now_ - before_;
-  if (is_first_step() && std::abs(before_) <= round_off * std::abs(step)) starts_there_ = true;
+  if (is_first_step() && std::abs(before_) <= rounding_of_values * std::abs(step)) starts_there_ = true;
   if (was_at_zero || (is_first_step() && starts_there_)) {
     if (now_ == 0) {
       is_at_zero_ = true;
@@ -50,7 +50,7 @@ bool FunctionWatch::next(double value, double time) {
     }
     before_ = std::copysign(tiny, now_);
   }
-  is_at_zero_ = step != 0 && std::abs(now_) <= round_off * std::abs(step);
+  is_at_zero_ = step != 0 && std::abs(now_) <= rounding_of_values * std::abs(step);
   return is_at_zero_ || passes_zero() || may_touch();
 }
 
@@ -67,7 +67,7 @@ bool FunctionWatch::next_from(double changed, std::optional<Passing> passing, do
   else if (passed)
     before_ = passing == Passing::touching ? std::copysign(tiny, value) : passing == Passing::falling ? -tiny : tiny;
   see(value, time);
-  if (passed && std::abs(now_) <= round_off * largest_) {
+  if (passed && std::abs(now_) <= rounding_of_values * largest_) {
     is_at_zero_ = true;  // it passed at the node: the step from there does not begin on the other side
     return false;
   }

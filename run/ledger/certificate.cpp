@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace lagroid {
 
@@ -14,15 +13,12 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// JSON has no infinity.
-OrderedJson number(double x) { return std::isfinite(x) ? OrderedJson(x) : OrderedJson(nullptr); }
-
 OrderedJson json(const laws::LawReport& suite) {
   OrderedJson laws = OrderedJson::array();
   for (const auto& law : suite.laws) {
     laws.push_back({{"law", law.name},
                     {"samples", law.samples},
-                    {"worst_defect", number(law.worst)},
+                    {"worst_defect", law.worst},
                     {"tolerance", law.tolerance},
                     {"skipped", law.skipped},
                     {"verdict", law.verdict()}});
@@ -88,12 +84,11 @@ std::string json_certificate(const Certificate& c) {
   OrderedJson suites = OrderedJson::array();
   for (const auto& suite : c.suites) suites.push_back(json(suite));
   OrderedJson symmetries = OrderedJson::array();
-  for (const auto& s : c.symmetries)
-    symmetries.push_back({{"name", s.name}, {"kind", s.kind}, {"defect", number(s.defect)}});
+  for (const auto& s : c.symmetries) symmetries.push_back({{"name", s.name}, {"kind", s.kind}, {"defect", s.defect}});
   OrderedJson reductions = OrderedJson::array();
   for (const auto& r : c.reductions) {
     reductions.push_back(
-        {{"name", r.name}, {"groupoid", r.groupoid}, {"defect", number(r.defect)}, {"descends", r.why_not.empty()}});
+        {{"name", r.name}, {"groupoid", r.groupoid}, {"defect", r.defect}, {"descends", r.why_not.empty()}});
     if (!r.why_not.empty()) reductions.back()["message"] = r.why_not;
   }
   OrderedJson out{{"system", c.system},   {"groupoid", c.groupoid},   {"status", c.status()},

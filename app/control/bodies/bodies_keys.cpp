@@ -39,7 +39,7 @@ const KeyOf<NumberArray> kept_point =
     vector_key("at", "m", "the point that keeps out, in the body's frame", Vec::Zero());
 const KeyOf<NumberArray> centre_key = vector_key("centre", "m", "x, y, z");
 const KeyOf<Number> radius_key{"radius", {positive}, "m", "of it"};
-const KeyOf<NumberArray> on_key = vector_key("point", "m", "of the plane");
+const KeyOf<NumberArray> on_plane_key = vector_key("point", "m", "of the plane");
 const KeyOf<NumberArray> normal_key = vector_key("normal", "", "leads to the side that the point stays on");
 const KeyOf<Number> time_weight{"weight", {nonnegative}, "", "w of the cost w T, which a free duration needs", 0.0};
 
@@ -63,7 +63,7 @@ const std::vector<LimitKind>& limit_kinds() {
       {"disk",
        "a point keeps out of a disk in the plane of x and y, a cylinder along z",
        {body_key, kept_point, centre_key, radius_key}},
-      {"plane", "a point stays on one side of a plane", {body_key, kept_point, on_key, normal_key}},
+      {"plane", "a point stays on one side of a plane", {body_key, kept_point, on_plane_key, normal_key}},
       {"cone",
        "a direction of a body that turns in space keeps off another, or near it",
        {body_key, direction_key, axis_key, at_least_key, at_most_key}},
@@ -153,7 +153,7 @@ class Reader {
     const Attachment point = point_of(table, kept_point, body);
     keep_out.site = point.site;
     if (keep_out.kind == KeepOut::Kind::plane) {
-      keep_out.centre = vector(table, on_key);
+      keep_out.centre = vector(table, on_plane_key);
       keep_out.normal = unit(table, normal_key);
     } else {
       keep_out.centre = vector(table, centre_key);

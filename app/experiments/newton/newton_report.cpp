@@ -23,8 +23,8 @@ namespace {
 using Cells = std::vector<const NewtonCell*>;
 
 /// Those of the figures.
-constexpr NewtonMethod shown[] = {NewtonMethod::fixed_point, NewtonMethod::version1, NewtonMethod::version2,
-                                  NewtonMethod::path};
+constexpr NewtonMethod shown_methods[] = {NewtonMethod::fixed_point, NewtonMethod::version1, NewtonMethod::version2,
+                                          NewtonMethod::path};
 
 /// The cells of one method, for every N and h or for one.
 Cells select(const NewtonFindings& f, NewtonExample example, NewtonMethod method, std::optional<int> n = {},
@@ -232,7 +232,7 @@ std::string tables(const NewtonFindings& f) {
       "`\n\nMedian number of iterations over the seeds, of those that converged; `-` where fewer than half did. For "
       "\"Newton and path\" the number of Jacobians factorised.\n";
   for (const auto example : newton_examples)
-    for (const auto method : shown) {
+    for (const auto method : shown_methods) {
       out += fmt::format("\n## Example {}, {}\n\n", number_of(example), name_of(method));
       std::vector<std::string> head{"log2 h"};
       for (const int n : sizes(f)) head.push_back(fmt::format("N = {}", n));
@@ -310,7 +310,7 @@ std::string figures(const NewtonFindings& f) {
         "\nset terminal svg size 1200,1280 background 'white' noenhanced font ',11'\nset output 'figure_5_{}.svg'\n"
         "set multiplot layout 4,3\nset palette defined (0 '#ffffcc', 0.5 '#41b6c4', 1 '#0c2c84')\n",
         number);
-    for (const auto method : shown) {
+    for (const auto method : shown_methods) {
       const bool ours = method == NewtonMethod::path;
       const std::string unit = ours ? "Jacobians" : "iterations";
       // Left: over h and N.

@@ -64,7 +64,7 @@ template <class Wanted> std::string curves_figure(const char* file, const Wanted
   return out + "unset multiplot\nset output\nunset logscale\nset yrange [*:*]\n\n";
 }
 
-std::string figures() {
+std::string accelerated_figures() {
   std::string out =
       "# Draws curves.csv and costs.csv; run by lagroid, or by hand: gnuplot figures.gp\nset datafile separator ','\n"
       "set grid\n\n";
@@ -158,7 +158,7 @@ std::vector<std::filesystem::path> write_accelerated_report(const AcceleratedFin
     write_text(runs_csv(findings), staging / "runs.csv");
     write_text(curves_csv(findings), staging / "curves.csv");
     write_text(costs_csv(findings), staging / "costs.csv");
-    write_text(figures(), staging / "figures.gp");
+    write_text(accelerated_figures(), staging / "figures.gp");
     return std::vector<std::string>{"runs.csv", "curves.csv", "costs.csv", "figures.gp"};
   };
   return write_and_draw(folder, accelerated_report_files, data,

@@ -28,7 +28,6 @@ constexpr std::array study_files{"study.csv", "study.json", "study.md",  "study.
 
 using OrderedJson = nlohmann::ordered_json;
 
-OrderedJson number(double x) { return std::isfinite(x) ? OrderedJson(x) : OrderedJson(nullptr); }
 std::string cell(double x, const char* format = "{:.2g}") {
   return std::isfinite(x) ? fmt::format(fmt::runtime(format), x) : "";
 }
@@ -356,7 +355,7 @@ std::string study_json(const Findings& findings) {
   out["command"] = findings.command;
   out["machine"] = findings.machine;
   out["time"] = findings.end;
-  out["reference"] = {{"method", findings.reference}, {"uncertainty", number(findings.uncertainty)}};
+  out["reference"] = {{"method", findings.reference}, {"uncertainty", findings.uncertainty}};
   for (const NamedVector& block : findings.reference_state) {
     OrderedJson b = {{"name", block.name}, {"size", block.size}, {"values", block.values}};
     out["reference"]["state"].push_back(b);
@@ -367,14 +366,14 @@ std::string study_json(const Findings& findings) {
                            {"step", m.step},
                            {"steps", m.work.steps},
                            {"evaluations", m.work.evaluations},
-                           {"seconds", number(m.median())},
-                           {"spread", number(m.spread())},
+                           {"seconds", m.median()},
+                           {"spread", m.spread()},
                            {"repetitions", m.seconds.size()},
-                           {"trajectory", number(m.trajectory)},
-                           {"invariants", number(m.invariants)},
-                           {"constraint", number(m.constraint)},
-                           {"energy_drift", number(m.drift)},
-                           {"energy_drift_error", number(m.drift_error)},
+                           {"trajectory", m.trajectory},
+                           {"invariants", m.invariants},
+                           {"constraint", m.constraint},
+                           {"energy_drift", m.drift},
+                           {"energy_drift_error", m.drift_error},
                            {"status", m.status},
                            {"message", m.message}});
   for (const Axis axis : axes) {

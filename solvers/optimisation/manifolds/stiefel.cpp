@@ -15,8 +15,8 @@ namespace lagroid::optimisation {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-using Map = Eigen::Map<Matrix>;
-using ConstMap = Eigen::Map<const Matrix>;
+using Map = Eigen::Map<Eigen::MatrixXd>;
+using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
 
 }  // namespace
 

@@ -14,8 +14,8 @@ namespace lagroid::optimisation {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-using Map = Eigen::Map<Matrix>;
-using ConstMap = Eigen::Map<const Matrix>;
+using Map = Eigen::Map<Eigen::MatrixXd>;
+using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
 
 /// The largest singular value of V, of which `gram` is V^T V.
 double spectral_norm(const Matrix& gram) {
