@@ -188,6 +188,25 @@ std::string why_not_changed(const Section& scene, const SceneNumber& number,
   return why;
 }
 
+/// Refuses numbers along which an event at the start would happen there or not, of the start and of parameters, in the
+/// order of why_none(parameters). Returns the places of those of the start.
+std::vector<int> refuse_at_start(
+    const std::function<std::vector<std::string>(const std::vector<std::string>& parameters)>& why_none,
+    GradientSubject& subject) {
+  std::vector<std::string> parameters, names;
+  for (const GradientName& each : subject.parameters) parameters.push_back(each.name);
+  for (const GradientName& each : subject.start) names.push_back("initial." + each.name);
+  for (const std::string& each : parameters) names.push_back("parameters." + each);
+  const std::vector<std::string> why = why_none(parameters);
+  std::vector<int> of_start;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (why[i].empty()) continue;
+    subject.refused.emplace_back(names[i], why[i]);
+    if (i < subject.start.size()) of_start.push_back(int(i));
+  }
+  return of_start;
+}
+
 }  // namespace
 
 std::optional<GradientSubject> bodies_gradient(const Section& scene) {
@@ -224,7 +243,7 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   std::vector<SceneNumber> numbers;
   for (const SceneNumber& number : numbers_to_differentiate(scene)) {
     if (const std::string why = why_not_changed(scene, number, begun_singly); !why.empty()) {
-      out.refused.push_back({number.name, why});
+      out.refused.emplace_back("parameters." + number.name, why);
       continue;
     }
     numbers.push_back(number);
@@ -292,13 +311,30 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   out.begin = [begin, events](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
     return std::make_unique<MotionThroughEvents>(begin(parameters, nudges), events);
   };
-  out.through_events = [begin, events, begun_by = out.begun_by, steps = out.steps](
+  out.begin_along = [](LinearisedMotion& begun_motion, const Eigen::MatrixXd& directions) {
+    dynamic_cast<MotionThroughEvents&>(begun_motion).begin_along(directions);
+  };
+  const auto all_directions = [begun_by = out.begun_by](const MotionThroughEvents& of,
+                                                        const std::vector<std::string>& parameters,
+                                                        const std::vector<Nudge>& nudges) {
+    const Eigen::Index states = of.states(), all = states + of.parameters();
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(all, all);
+    if (begun_by) directions.topRows(states) = begun_by(parameters, nudges);
+    return directions;
+  };
+  const std::vector<int> refused_start = refuse_at_start(
+      [&](const std::vector<std::string>& parameters) {
+        MotionThroughEvents first(begin(parameters, {}), events);
+        return first.why_none_along(all_directions(first, parameters, {}));
+      },
+      out);
+  out.through_events = [begin, events, all_directions, refused_start, steps = out.steps](
                            const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
                            ThroughEvents by) {
     MotionThroughEvents through(begin(parameters, nudges), events);
     const Eigen::Index states = through.states(), of_numbers = through.parameters();
-    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(states + of_numbers, states + of_numbers);
-    if (begun_by) directions.topRows(states) = begun_by(parameters, nudges);
+    Eigen::MatrixXd directions = all_directions(through, parameters, nudges);
+    for (const int each : refused_start) directions.col(each).setZero();
     const Eigen::Index asked = by == ThroughEvents::start_too    ? states + of_numbers
                                : by == ThroughEvents::parameters ? of_numbers
                                                                  : 0;

@@ -182,8 +182,7 @@ int fit_program(int argc, char** argv, const std::vector<AskGradient>& subjects)
   CLI::App app{"parameters and starts of a scene from measured columns", "lagroid fit"};
   FitCommandOptions options;
   add_scene_options(app, options);
-  app.add_option("data", options.data, "CSV files with the columns t and others of the run; one for each run")
-      ->required();
+  app.add_option("data", options.data, "CSV or HDF5 files with t and columns of the run; one for each run")->required();
   app.add_option("--wrt", options.fit.unknowns,
                  "what is fitted: initial.NAME or parameters.NAME, separated by commas (default: all)")
       ->delimiter(',')

@@ -62,7 +62,8 @@ struct GradientSubject {
   /// where the state itself is.
   std::function<Eigen::MatrixXd(const std::vector<std::string>& parameters, const std::vector<Nudge>&)> begun_by =
       nullptr;
-  /// Numbers by which there is no derivative, and why; whether they are among the parameters or not.
+  /// Numbers by which there is no derivative, as initial.NAME and parameters.NAME, and why; whether they are among
+  /// those of `start` and `parameters` or not.
   std::vector<std::pair<std::string, std::string>> refused = {};
   std::vector<std::string> notes = {};   ///< on what derivatives hold
   std::vector<std::string> events = {};  ///< of the scene, by their names
@@ -72,11 +73,16 @@ struct GradientSubject {
                                    ThroughEvents)>
       through_events = nullptr;
   bool begins_through_events = false;  ///< whether motions of `begin` go through them
+  /// Tells such a motion, before its first step, along which directions it is asked for; null where none wants to know.
+  std::function<void(LinearisedMotion&, const Eigen::MatrixXd& directions)> begin_along = nullptr;
   /// Of a boundary value, by these parameters; `start` is then both ends. Null for a run.
   std::function<BoundaryCost(const std::vector<std::string>& parameters)> cost = nullptr;
 };
 
-/// Finds the parameters by which motions of `begin` have no derivative, as one step tells: those are `refused`.
+/// Finds the parameters that are `refused`: those by which `differentiate` throws WithoutDerivative.
+void find_refused(GradientSubject& subject,
+                  const std::function<void(const std::vector<std::string>& parameters)>& differentiate);
+/// Those by which the first step of `begin` has none.
 void find_refused(GradientSubject& subject);
 
 /// Adds the parameters of a system, and their sizes after those of the start.

@@ -65,21 +65,24 @@ bool chooses(const std::string& name, const GradientName& each) {
   return name.empty() || each.group == name || each.name == name || each.name.starts_with(name + ".");
 }
 
-/// Those that have a derivative; the others are left out, unless the word chooses nothing else.
-std::vector<int> chosen_parameters(const GradientSubject& subject, const std::string& word, const std::string& name,
-                                   std::vector<int>& left_out) {
+/// Those with a derivative of what a word chooses at a place; the others are left out, unless it chooses nothing else.
+std::vector<int> chosen_with_derivatives(const GradientSubject& subject, const std::vector<GradientName>& all,
+                                         const std::string& word, const Asked& asked, std::vector<int>& left_out) {
   std::vector<int> out, refused;
-  for (int i = 0; i < int(subject.refused.size()); ++i)
-    if (chooses(name, {"parameters", subject.refused[std::size_t(i)].first})) refused.push_back(i);
-  if (refused.empty()) return chosen_names(subject.parameters, word, name);
-  for (int i = 0; i < int(subject.parameters.size()); ++i) {
-    const GradientName& each = subject.parameters[std::size_t(i)];
-    const bool is_refused = std::any_of(subject.refused.begin(), subject.refused.end(),
-                                        [&](const auto& other) { return other.first == each.name; });
-    if (!is_refused && chooses(name, each)) out.push_back(i);
+  std::vector<char> is_refused(all.size(), 0);
+  for (int i = 0; i < int(subject.refused.size()); ++i) {
+    const auto of = split_after(subject.refused[std::size_t(i)].first, asked.place);
+    if (!of) continue;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const GradientName& each) { return each.name == of->name; });
+    if (found != all.end()) is_refused[std::size_t(found - all.begin())] = 1;
+    if (chooses(asked.name, found != all.end() ? *found : GradientName{asked.place, of->name})) refused.push_back(i);
   }
+  if (refused.empty()) return chosen_names(all, word, asked.name);
+  for (int i = 0; i < int(all.size()); ++i)
+    if (is_refused[std::size_t(i)] == 0 && chooses(asked.name, all[std::size_t(i)])) out.push_back(i);
   const auto& [first, why] = subject.refused[std::size_t(refused.front())];
-  if (out.empty() && !name.empty()) throw GradientRefused(fmt::format("parameters.{}: {}", first, why));
+  if (out.empty() && !asked.name.empty()) throw GradientRefused(fmt::format("{}: {}", first, why));
   for (const int each : refused)
     if (std::find(left_out.begin(), left_out.end(), each) == left_out.end()) left_out.push_back(each);
   return out;
@@ -282,10 +285,10 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
     std::vector<int> more;
     if (const auto of_start = split_after(word, word_of_start(subject))) {
       into = &out.start;
-      more = chosen_names(subject.start, word, of_start->name);
+      more = chosen_with_derivatives(subject, subject.start, word, *of_start, out.left_out);
     } else if (const auto of_system = split_after(word, "parameters")) {
       into = &out.parameters;
-      more = chosen_parameters(subject, word, of_system->name, out.left_out);
+      more = chosen_with_derivatives(subject, subject.parameters, word, *of_system, out.left_out);
     } else {
       throw GradientRefused(
           fmt::format("{}: derivatives are by {}.NAME or parameters.NAME", word, word_of_start(subject)));
@@ -300,18 +303,18 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
 
 std::vector<std::string> notes_on_left_out(const GradientSubject& subject, const GradientColumns& columns) {
   std::vector<std::string> names;
-  for (const int i : columns.left_out) names.push_back("parameters." + subject.refused[std::size_t(i)].first);
+  for (const int i : columns.left_out) names.push_back(subject.refused[std::size_t(i)].first);
   if (names.empty()) return {};
   const std::string& why = subject.refused[std::size_t(columns.left_out.front())].second;
   if (names.size() == 1) return {fmt::format("{} is left out: {}", names.front(), why)};
   return {fmt::format("{} are left out; {}: {}", fmt::join(names, ", "), names.front(), why)};
 }
 
-void find_refused(GradientSubject& subject) {
+void find_refused(GradientSubject& subject,
+                  const std::function<void(const std::vector<std::string>& parameters)>& differentiate) {
   const auto why_none = [&](const std::vector<std::string>& parameters) -> std::string {
     try {
-      const auto motion = subject.begin(parameters, {});
-      if (motion->advance().converged()) motion->linearise();
+      differentiate(parameters);
       return "";
     } catch (const WithoutDerivative& refusal) {
       return refusal.what();
@@ -321,7 +324,15 @@ void find_refused(GradientSubject& subject) {
   for (const GradientName& each : subject.parameters) all.push_back(each.name);
   if (why_none(all).empty()) return;
   for (const std::string& name : all)
-    if (std::string why = why_none({name}); !why.empty()) subject.refused.emplace_back(name, std::move(why));
+    if (std::string why = why_none({name}); !why.empty())
+      subject.refused.emplace_back("parameters." + name, std::move(why));
+}
+
+void find_refused(GradientSubject& subject) {
+  find_refused(subject, [&](const std::vector<std::string>& parameters) {
+    const auto motion = subject.begin(parameters, {});
+    if (motion->advance().converged()) motion->linearise();
+  });
 }
 
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,

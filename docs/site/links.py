@@ -47,13 +47,31 @@ def source_pages(app):
         yield f"source/{path}", {"title": path, "body": f"<h1>{path}</h1>{code}"}, "page.html"
 
 
+def share_contents(app, page, template, context, tree):
+    """Pages of sources are in no table of contents; the one beside them, which takes Sphinx longest, is the same for all that
+    lie as deep."""
+    if not page.startswith("source/"):
+        return
+    make, kept = context["toctree"], app.env.lagroid_contents
+
+    def contents(**options):
+        which = page.count("/"), tuple(sorted(options.items()))
+        if which not in kept:
+            kept[which] = make(**options)
+        return kept[which]
+
+    context["toctree"] = contents
+
+
 def prepare(app):
     app.env.lagroid_sources = set()
+    app.env.lagroid_contents = {}
 
 
 def setup(app):
     app.connect("builder-inited", prepare)
     app.connect("html-collect-pages", source_pages)
+    app.connect("html-page-context", share_contents)
     app.add_transform(Sources)
     app.add_post_transform(Folders)
     return {"parallel_read_safe": False, "parallel_write_safe": True}

@@ -28,5 +28,6 @@ def control(
 def control_loop(scene: SceneLike, *, set: Optional[Mapping[str, Any]] = None) -> ControlLoop:
     """Model predictive control by a scene of `lagroid control`: its first plan is the cheapest that is found, and
     `advance(state)` makes the next one, a sample of the length of a stage later, from where the motion is by then.
-    Samples are solved as `[loop]` of the scene says, if it has one. Raises SceneError where the scene is mistaken."""
+    Samples are solved as `[loop]` of the scene says, if it has one; where `status` is not "converged" the control is that of
+    the last iterate, within its bounds. Raises SceneError where the scene is mistaken."""
     return ControlLoop(made(scene, set))

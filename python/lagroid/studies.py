@@ -192,7 +192,7 @@ def fit(
     """Parameters and starts of a scene from measured columns, as `lagroid fit --json` tells them (docs/fit.md):
     "unknowns", "covariance", "undetermined" and more.
 
-    `data`: CSV files, one for each run, with the columns `t` and others of the run; empty fields are gaps. `wrt`: what
+    `data`: CSV or HDF5 files, one for each run, with `t` and columns of the run; empty fields and NaN are gaps. `wrt`: what
     is fitted, as "initial.momentum" or "parameters.length". `of`: the columns that are used, all by default. `columns`:
     more columns of the run, as {"w1": "M1 / parameters.inertia.0"}, and `combinations` functions of unknowns that are
     to be told, as {"ratio": "parameters.inertia.1 / parameters.inertia.0"}. `sigma`: deviations of their errors, 1 by default. `bounds`: of what is fitted. `huber`: beyond so many sigma a residual

@@ -216,6 +216,8 @@ class Control(unittest.TestCase):
             loop.advance([np.nan] * 6)
         with self.assertRaisesRegex(lagroid.SceneError, "free"):
             lagroid.control_loop(EXAMPLES / "control/fastest_stop.toml")
+        with self.assertRaisesRegex(lagroid.SceneError, "M1 is conserved"):
+            lagroid.control_loop(EXAMPLES / "control/falling_cat.toml", set={"solver.starts": 1})
 
 
 if __name__ == "__main__":

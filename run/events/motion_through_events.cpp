@@ -31,6 +31,7 @@ MotionThroughEvents::MotionThroughEvents(std::unique_ptr<CuttableMotion> motion,
       events_(std::move(events)),
       happened_(events_.size(), 0),
       touched_(events_.size(), 0),
+      begins_(events_.size(), 0),
       stays_at_start_(events_.size(), 0) {
   for (const ObservedEvent& event : events_) {
     if (!event.function) throw std::invalid_argument(fmt::format("event \"{}\": it has no function", event.name));
@@ -74,11 +75,10 @@ StepReport MotionThroughEvents::advance() try {
   const std::vector<double> now = values();
   for (std::size_t i = 0; i < events_.size(); ++i) {
     if (watches_[i].next(now[i], time())) suspects.push_back(i);
-    if (steps_ == 1 && stays_at_start_[i] == 0 && watches_[i].starts_there() && events_[i].decides() &&
-        is_in_direction(events_[i].direction, -now[i], now[i]))
-      conflict_ =
-          fmt::format("the function of event \"{}\" is zero at the start, and what follows has no derivative there",
-                      events_[i].name);
+    if (steps_ == 1)
+      begins_[i] =
+          watches_[i].starts_there() && events_[i].decides() && is_in_direction(events_[i].direction, -now[i], now[i]);
+    if (steps_ == 1 && begins_[i] != 0 && stays_at_start_[i] == 0) conflict_ = why_none_at_start(i);
   }
   for (int changes = 0; !suspects.empty() && !is_over_; ++changes) {
     if (changes == most_changes_in_step) {
@@ -126,6 +126,11 @@ StepReport MotionThroughEvents::advance() try {
 } catch (const std::domain_error& error) {
   reason_ = error.what();
   return {SolveStatus::left_domain};
+}
+
+std::string MotionThroughEvents::why_none_at_start(std::size_t event) const {
+  return fmt::format("the function of event \"{}\" is zero at the start, and what follows has no derivative there",
+                     events_[event].name);
 }
 
 std::vector<MotionThroughEvents::Found> MotionThroughEvents::find(const std::vector<std::size_t>& suspects,

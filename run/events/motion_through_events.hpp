@@ -82,6 +82,9 @@ class MotionThroughEvents final : public LinearisedMotion {
   /// Before the first step, along which directions of (v, mu, theta) it is asked for: an event whose function is zero
   /// at the start has a derivative where it stays zero along all of them. Without it none has.
   void begin_along(const Eigen::MatrixXd& directions);
+  /// Of each of such directions, why the run has no derivative along it for an event that is zero at the start; empty
+  /// where it has none of these. It takes the first step.
+  std::vector<std::string> why_none_along(const Eigen::MatrixXd& directions);
 
  private:
   /// A part of a step, to where something happened.
@@ -126,6 +129,10 @@ class MotionThroughEvents final : public LinearisedMotion {
   /// f(t, seen) by (states, theta, t), where the motion is.
   NodeValues along(const NodeValues& seen, const std::function<VariedVector(const VariedVector&)>& f) const;
   NodeValues function_by(std::size_t event, const NodeValues& seen) const;
+  /// Whether functions change along directions at the start: a row for each event, that of one that does not decide
+  /// false.
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> changes_at_start(const Eigen::MatrixXd& directions) const;
+  std::string why_none_at_start(std::size_t event) const;
 
   // Rows of the directions of a part.
   Eigen::Index time_row() const { return states() + parameters(); }
@@ -135,8 +142,9 @@ class MotionThroughEvents final : public LinearisedMotion {
   std::vector<ObservedEvent> events_;
   std::vector<FunctionWatch> watches_;
   std::vector<long> happened_;
-  std::vector<long> touched_;  ///< by events that only record
-  std::vector<char> stays_at_start_;
+  std::vector<long> touched_;         ///< by events that only record
+  std::vector<char> begins_;          ///< which are zero at the start, and would happen there
+  std::vector<char> stays_at_start_;  ///< whose functions stay what they are there
   long steps_ = 0;
   bool is_over_ = false;  ///< an event has ended the run
   // Of the last step.

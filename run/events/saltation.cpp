@@ -65,17 +65,36 @@ NodeValues MotionThroughEvents::function_by(std::size_t event, const NodeValues&
   });
 }
 
-void MotionThroughEvents::begin_along(const Eigen::MatrixXd& directions) {
+Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> MotionThroughEvents::changes_at_start(
+    const Eigen::MatrixXd& directions) const {
   constexpr double rounding = 1e-12;
   NodeValues seen = motion_->observe();
   seen.derivatives.conservativeResize(Eigen::NoChange, time_row() + 1);
   seen.derivatives.col(time_row()).setZero();
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> out(Eigen::Index(events_.size()), directions.cols());
+  out.setConstant(false);
   for (std::size_t i = 0; i < events_.size(); ++i) {
     if (!events_[i].decides()) continue;
     const Eigen::RowVectorXd by = function_by(i, seen).derivatives.row(0).head(time_row());
     const Eigen::RowVectorXd terms = by.cwiseAbs() * directions.cwiseAbs();
-    stays_at_start_[i] = ((by * directions).cwiseAbs().array() <= rounding * terms.array()).all();
+    out.row(Eigen::Index(i)) = !((by * directions).cwiseAbs().array() <= rounding * terms.array());
   }
+  return out;
+}
+
+void MotionThroughEvents::begin_along(const Eigen::MatrixXd& directions) {
+  const auto changes = changes_at_start(directions);
+  for (std::size_t i = 0; i < events_.size(); ++i) stays_at_start_[i] = !changes.row(Eigen::Index(i)).any();
+}
+
+std::vector<std::string> MotionThroughEvents::why_none_along(const Eigen::MatrixXd& directions) {
+  const auto changes = changes_at_start(directions);
+  std::vector<std::string> out(std::size_t(directions.cols()));
+  advance();
+  for (std::size_t i = 0; i < events_.size(); ++i)
+    for (std::size_t k = 0; k < out.size() && begins_[i] != 0; ++k)
+      if (changes(Eigen::Index(i), Eigen::Index(k))) out[k] = why_none_at_start(i);
+  return out;
 }
 
 bool MotionThroughEvents::lead_to(const Piece& piece, Derivatives& to) {

@@ -130,6 +130,10 @@ namespace {
 
 /// y -= a x.
 void subtract(double a, const double* x, double* y, int sides) {
+  if (sides == 1) {
+    *y -= a * *x;
+    return;
+  }
   for (int k = 0; k < sides; ++k) y[k] -= a * x[k];
 }
 

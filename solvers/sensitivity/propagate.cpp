@@ -28,7 +28,11 @@ double binomial(long s, long r) {
 long first_part(long steps, long states) {
   long repeats = 1;
   while (binomial(states, repeats) < double(steps)) ++repeats;
-  return long(std::clamp(binomial(states, repeats - 1), 1.0, double(steps - 1)));
+  double part = binomial(states, repeats - 1);
+  // Of two repeats, the shortest p with p (states - p) >= steps does as well, and fewer states are at work at a time.
+  const double slack = double(states) * double(states) - 4 * double(steps);
+  if (repeats == 2 && slack >= 0) part = std::ceil(0.5 * (double(states) - std::sqrt(slack)));
+  return long(std::clamp(part, 1.0, double(steps - 1)));
 }
 
 /// The weight of a node in what is observed, over a run of equal steps.
@@ -90,11 +94,18 @@ double duration_of(LinearisedMotion& motion, long steps, const Observed& observe
   return double(steps) * step;
 }
 
-/// Of the states alone: what a small change of them becomes in the last step.
-Eigen::MatrixXd matrix_of_the_step(const LinearisedMotion& motion) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Identity(motion.states() + motion.parameters(), motion.states());
-  for (int stage = 0; stage < motion.stages(); ++stage) out = motion.stage(stage).forward(out);
-  return out.topRows(motion.states());
+/// Of the states alone: what a small change of them becomes in the last step. Few columns at a time stay in the cache.
+void find_matrix_of_the_step(const LinearisedMotion& motion, Eigen::MatrixXd& out) {
+  constexpr Eigen::Index at_once = 8;
+  const Eigen::Index states = motion.states();
+  out.resize(states, states);
+  for (Eigen::Index first = 0; first < states; first += at_once) {
+    const Eigen::Index count = std::min(at_once, states - first);
+    Eigen::MatrixXd some = Eigen::MatrixXd::Zero(states + motion.parameters(), count);
+    some.middleRows(first, count).setIdentity();
+    for (int stage = 0; stage < motion.stages(); ++stage) some = motion.stage(stage).forward(some);
+    out.middleCols(first, count) = some.topRows(states);
+  }
 }
 
 /// The motion in reverse, from nodes kept on the way. Where the present step ends is kept beside them, so that a motion
@@ -172,7 +183,10 @@ class Reversal {
       observe(from + 1);
       if (gradients_.size() == 0) return true;
       for (int k = motion_.stages(); k-- > 0;) gradients_ = motion_.stage(k).backward(gradients_);
-      if (wants_matrix) units_.see(matrix_of_the_step(motion_));
+      if (wants_matrix) {
+        find_matrix_of_the_step(motion_, matrix_);
+        units_.see(matrix_);
+      }
     }
     peak_ = peak_.cwiseMax(gradients_.topRows(motion_.states()).cwiseAbs());
     return true;
@@ -199,6 +213,7 @@ class Reversal {
   Eigen::MatrixXd first_;  ///< the largest that they were where something was observed, entry by entry
   Eigen::MatrixXd peak_;   ///< and anywhere
   OwnUnits units_;
+  Eigen::MatrixXd matrix_;
 };
 
 }  // namespace
@@ -219,6 +234,7 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   out.end = directions;
   const Eigen::Index states = motion.states();
   Growth growth(directions.topRows(states));
+  Eigen::MatrixXd matrix;
   const double duration = duration_of(motion, steps, observed, out);
   const auto observe = [&](long node) {
     const double weight = weight_of(observed, node, steps, duration);
@@ -236,7 +252,10 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   for (long k = 0; k < steps && advance_linearised(motion, out); ++k) {
     for (int stage = 0; stage < motion.stages(); ++stage) out.end = motion.stage(stage).forward(out.end);
     growth.after_a_step(out.end.topRows(states));
-    if (growth.wants_matrix()) growth.see(matrix_of_the_step(motion));
+    if (growth.wants_matrix()) {
+      find_matrix_of_the_step(motion, matrix);
+      growth.see(matrix);
+    }
     observe(k + 1);
   }
   out.growth = growth.largest();

@@ -11,7 +11,14 @@ sys.path.insert(0, str(root / "docs/site"))
 import architecture
 
 page = (root / "docs/architecture.md").read_text()
-decisions = sorted(path for path in (root / "docs/decisions").glob("*.md") if path.name != "index.md")
+
+
+def number_of(name):
+    return int(name.split("_")[0])
+
+
+decisions = sorted((path for path in (root / "docs/decisions").glob("*.md") if path.name != "index.md"),
+                   key=lambda path: number_of(path.name))
 
 
 def folders_of(text, top):
@@ -84,7 +91,7 @@ class Decisions(unittest.TestCase):
 
     def test_are_listed(self):
         index = (root / "docs/decisions/index.md").read_text()
-        listed = sorted(re.findall(r"^- \[(.+)\]\((\w+\.md)\), ([\d-]+)$", index, re.M), key=lambda entry: entry[1])
+        listed = sorted(re.findall(r"^- \[(.+)\]\((\w+\.md)\), ([\d-]+)$", index, re.M), key=lambda entry: number_of(entry[1]))
         there = [(*re.match(r"# (.+)\n\n(.+)\n", path.read_text()).groups(), path.name) for path in decisions]
         self.assertEqual(listed, [(title, name, date) for title, date, name in there])
         self.assertEqual(re.search(r"maxdepth: 1\n(.*)\n```", index, re.S)[1].split(),

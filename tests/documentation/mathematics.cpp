@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -61,7 +60,7 @@ std::vector<std::string> misplaced_on(const std::string& page) {
   }
   std::vector<std::string> out;
   const auto compare = [&](const std::string& name, bool at_night) {
-    if (std::regex_search(told, std::regex("\\b" + name + "\\b")) != at_night) out.push_back(name);
+    if (has_word(told, name) != at_night) out.push_back(name);
   };
   for (const auto& test : matches(page, "`([A-Z]\\w+\\.[A-Z]\\w+)`"))
     compare(test.substr(0, test.find('.')), body_of(test, daily).empty());

@@ -1,5 +1,6 @@
 #pragma once
-/// The subject of `lagroid gradient` of a boundary value: the path that the scene's run finds, and its cost.
+/// The subject of `lagroid gradient` of a boundary value: the path that the scene's run finds, and its cost. It finds
+/// it at once, and by which parameters the cost has no derivative.
 ///
 ///     const GradientSubject subject = cost_subject_of(module.prepare(scene, {}), scene);
 ///
@@ -60,20 +61,21 @@ GradientSubject cost_subject_of(const PreparedScene<Sys>& prepared, const Sectio
         out.sizes.push_back(1);
       }
     name_parameters(prepared.system, out);
-    out.cost = [prepared](const std::vector<std::string>& parameters) {
+    Sys system = prepared.system;
+    Path<Sys> path;
+    const RunResult result = prepared.run([&](const TrajectoryPoint<Sys>& point) {
+      if (point.index == 0) return;
+      if constexpr (HasTimeStep<Sys>) set_time_step(system, point.step_size);
+      path.push_back(point.step);
+    });
+    const std::string failure = result.converged() ? "" : result.message;
+    if (failure.empty())
+      find_refused(out, [&](const std::vector<std::string>& parameters) { cost_gradient(system, path, parameters); });
+    out.cost = [system, path, failure](const std::vector<std::string>& parameters) {
       BoundaryCost cost;
-      Sys system = prepared.system;
-      Path<Sys> path;
-      const RunResult result = prepared.run([&](const TrajectoryPoint<Sys>& point) {
-        if (point.index == 0) return;
-        if constexpr (HasTimeStep<Sys>) set_time_step(system, point.step_size);
-        path.push_back(point.step);
-      });
       cost.steps = long(path.size());
-      if (!result.converged()) {
-        cost.failure = result.message;
-        return cost;
-      }
+      cost.failure = failure;
+      if (!failure.empty()) return cost;
       const CostGradient found = cost_gradient(system, path, parameters);
       cost.value = found.cost;
       cost.by_ends.resize(2 * n);

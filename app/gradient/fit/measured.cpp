@@ -47,6 +47,26 @@ long node_at(double time, const Nodes& nodes, const std::string& file, long line
   return long(nearest);
 }
 
+/// Rows are numbered from one, as lines would be.
+CsvTable table_of_series(const std::string& file) {
+  CsvTable out;
+  out.names = {"t"};
+  read_series(file, [&](const std::vector<double>& time, const RecordedSeries& series) {
+    for (std::size_t k = out.rows.size(); k < time.size(); ++k) {
+      out.rows.push_back({time[k]});
+      out.lines.push_back(long(k) + 1);
+    }
+    for (const std::string& name : series.columns) {
+      if (out.column(name) != CsvTable::npos)
+        throw DataError(fmt::format("{}: there are two columns {}; leave one", file, name));
+      out.names.push_back(name);
+    }
+    for (std::size_t k = 0; k < time.size(); ++k)
+      for (std::size_t c = 0; c < series.columns.size(); ++c) out.rows[k].push_back(series.at(k, c));
+  });
+  return out;
+}
+
 /// One who reads the columns of several files.
 class Reader {
  public:
@@ -57,7 +77,8 @@ class Reader {
   }
 
   MeasuredRun read(const std::string& file) {
-    const CsvTable table = read_csv_table(file, "t and columns of the run", Gaps::allowed);
+    const CsvTable table =
+        is_hdf5(file) ? table_of_series(file) : read_csv_table(file, "t and columns of the run", Gaps::allowed);
     const std::size_t time = table.column("t");
     if (time == CsvTable::npos) throw DataError(fmt::format("{}: no column t, the time, in the header", file));
     MeasuredRun out;

@@ -1,5 +1,5 @@
 #pragma once
-/// What was measured of runs, read from CSV files: a file for each run, a column t and others of the run.
+/// What was measured of runs, read from CSV and HDF5 files: a file for each run, with times and columns of the run.
 ///
 ///     const std::vector<MeasuredRun> runs = read_measured(subject, {"run.csv"}, options, fit);
 ///

@@ -16,9 +16,7 @@ namespace lagroid::app {
 class PredictedRuns::Course {
  public:
   Course(std::unique_ptr<LinearisedMotion> motion, Eigen::MatrixXd directions)
-      : motion_(std::move(motion)), directions_(std::move(directions)) {
-    if (auto* through = dynamic_cast<MotionThroughEvents*>(motion_.get())) through->begin_along(directions_);
-  }
+      : motion_(std::move(motion)), directions_(std::move(directions)) {}
 
   const LinearisedMotion& motion() const { return *motion_; }
   const Eigen::MatrixXd& directions() const { return directions_; }
@@ -102,8 +100,10 @@ void PredictedRuns::predict(std::size_t run, std::size_t first, bool with_deriva
   const std::vector<Nudge> nudges = nudges_of(run);
   auto motion = subject_.begin(with_derivatives ? names_of(subject_, columns_) : std::vector<std::string>(), nudges);
   const Eigen::Index states = motion->states();
-  Course course(std::move(motion),
-                with_derivatives ? directions_of(subject_, columns_, nudges, states) : Eigen::MatrixXd(states, 0));
+  Eigen::MatrixXd directions =
+      with_derivatives ? directions_of(subject_, columns_, nudges, states) : Eigen::MatrixXd(states, 0);
+  if (subject_.begin_along) subject_.begin_along(*motion, directions);
+  Course course(std::move(motion), std::move(directions));
   const auto from_start = Eigen::Index(columns_.start.size()), by_parameters = Eigen::Index(columns_.parameters.size());
   std::optional<NodeValues> here;
   const MeasuredNumber* last = nullptr;

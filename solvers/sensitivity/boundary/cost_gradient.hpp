@@ -13,8 +13,8 @@
 ///     const CostGradient cost = cost_gradient(problem.system, found.solutions.front().path, {"strength"});
 ///     const double by_strength = cost.by_parameters(0);
 ///
-/// Requires a stationary path of equal steps. Errors: std::invalid_argument for a name that is no parameter, and for
-/// one by which the ends leave their object constraints; WithoutDerivative for one that the system reads as a plain
+/// Requires a stationary path of equal steps. Errors: std::invalid_argument for a name that is no parameter;
+/// WithoutDerivative for one by which the ends leave their object constraints, or that the system reads as a plain
 /// number. Source: [G] Def. 3.3; envelope theorem.
 
 #include <lagroid/core/derivatives/two_sided.hpp>
@@ -49,7 +49,7 @@ template <class V, DiscreteSystem Sys> V augmented_action(const Sys& system, con
   return sum;
 }
 
-/// Throws for a parameter by which an end would leave its object constraints.
+/// Throws WithoutDerivative for a parameter by which an end would leave its object constraints.
 template <DiscreteSystem Sys>
 void require_ends_that_stay(const Sys& system, const Path<Sys>& path, const ParameterPlaces& places, int first) {
   if constexpr (Sys::object_constraints > 0) {
@@ -59,8 +59,8 @@ void require_ends_that_stay(const Sys& system, const Path<Sys>& path, const Para
       for (int a = 0; a < Sys::object_constraints; ++a)
         for (int k = first; k < std::min(int(places.names.size()), first + varied_at_once); ++k)
           if (at(a).tangent(k - first) != 0)
-            throw std::invalid_argument("the ends would leave their constraints for another " +
-                                        places.names[std::size_t(k)] + ": the cost has no derivative by it");
+            throw WithoutDerivative("the ends would leave their constraints for another " +
+                                    places.names[std::size_t(k)] + ": the cost has no derivative by it");
     }
   }
 }

@@ -186,10 +186,12 @@ bool SparseStep::factor_densely() {
 
 void SparseStep::add_product(int first, double sign, const Rows& x, Rows& out) const {
   const int sides = int(x.cols());
-  for (int j = 0; j < int(x.rows()); ++j)
+  for (int j = 0; j < int(x.rows()); ++j) {
+    if (x.row(j).isZero(0)) continue;  // directions of single numbers are zero elsewhere
     for (int k = pattern_->begins[std::size_t(first + j)]; k < pattern_->begins[std::size_t(first + j) + 1]; ++k)
       add(sign * values[std::size_t(k)], x.data() + j * sides, out.data() + pattern_->rows[std::size_t(k)] * sides,
           sides);
+  }
 }
 
 SparseStep::Rows SparseStep::transposed_product(int first, int count, const Rows& y) const {

@@ -30,6 +30,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 #include <tuple>
 
@@ -87,7 +88,7 @@ struct FallingCat : System<FallingCat, Product<SO3, Pair<2>>> {
 };
 
 /// Moved at the least |torque|^2.
-struct BendingCat : ActuatedSystem<BendingCat, FallingCat, /*controls*/ 2, /*inequalities*/ 1> {
+struct BendingCat : ActuatedSystem<BendingCat, FallingCat, /*controls*/ 2, /*inequalities*/ 3> {
   static constexpr std::array<std::string_view, 10> states{"r1", "r2", "r3", "b1", "b2", "M1", "M2", "M3", "p1", "p2"};
   static constexpr std::array<std::string_view, 2> control_names{"torque1", "torque2"};
   /// The angular momentum: at the end it is what it was at the start, and not another condition.
@@ -101,12 +102,18 @@ struct BendingCat : ActuatedSystem<BendingCat, FallingCat, /*controls*/ 2, /*ine
   template <class Z, class S> S running_cost(const Z&, const Vector<S, 2>& u) const {
     return u(0) * u(0) + u(1) * u(1);
   }
-  /// cos of the largest bend <= e_3.J e_3.
-  template <class A, class S> Vector<S, 1> inequality(const A& g, const Vector<S, 2>&, const S&) const {
+  /// cos of the largest bend <= e_3.J e_3, and no step turns the front half, or moves the bends, by more than a quarter
+  /// turn: L is of chords, and momentum goes as the sine of what a step turns by, so that half turns would be free.
+  template <class A, class S> Vector<S, 3> inequality(const A& g, const Vector<S, 2>&, const S&) const {
     using std::cos;
-    const auto& [arrow, momentum] = g;
-    const Vector<S, 2>& b = std::get<1>(arrow).target;
-    return Vector<S, 1>(cos(system.largest_bend) - cos(b(0)) * cos(b(1)));
+    const auto& [turn, bend] = std::get<0>(g);
+    const Vector<S, 2>& b = bend.target;
+    const Vector<S, 2> by = b - bend.source;
+    Vector<S, 3> out;
+    out(0) = cos(system.largest_bend) - cos(b(0)) * cos(b(1));
+    out(1) = 1.0 - turn(0, 0) - turn(1, 1) - turn(2, 2);  // the trace is 1 + 2 cos
+    out(2) = by(0) * by(0) + by(1) * by(1) - 0.25 * std::numbers::pi * std::numbers::pi;
+    return out;
   }
 };
 

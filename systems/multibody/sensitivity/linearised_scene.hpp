@@ -113,7 +113,7 @@ class LinearisedScene final : public CuttableMotion {
   std::vector<std::optional<SparseStep>> linear_;                    ///< of the stages
   std::optional<Stages> stages_;
   std::optional<SceneAdjoint> adjoint_;  ///< of scenes that have one
-  std::vector<int> left_out_;  ///< rows, at the start
+  std::vector<int> left_out_;            ///< rows, at the start
   Eigen::MatrixXd start_;
   LinearStep begin_;     ///< (v, mu, theta) of the start, by displacements of it and theta
   bool begins_ = false;  ///< whether the last step was the first

@@ -435,5 +435,30 @@ TEST(EventsOfBodiesWithoutDerivative, AreToldInOneLine) {
   EXPECT_THROW(motion_of(subject, Events{{.name = "none"}}), std::invalid_argument);
 }
 
+TEST(EventsOfBodiesWithoutDerivative, AtTheStartAreToldByDirection) {
+  // Where it is, the first ball would be kicked at once or not at all; what else varies leaves that as it is.
+  const Colliding subject;
+  Events begins = Colliding::events();
+  begins.resize(1);
+  begins[0].function = [](const VariedVector& seen) { return V(place(seen, 0)(0)); };
+  begins[0].kick = Colliding::events()[1].kick;
+  const Eigen::MatrixXd directions = directions_of(subject);
+  MotionThroughEvents asked = motion_of(subject, begins);
+  const std::vector<std::string> why = asked.why_none_along(directions);
+  ASSERT_EQ(why.size(), std::size_t(directions.cols()));
+  std::vector<Eigen::Index> others;
+  for (std::size_t k = 0; k < why.size(); ++k)
+    if (why[k].empty()) others.push_back(Eigen::Index(k));
+  ASSERT_EQ(others.size() + 1, why.size());
+  const Eigen::MatrixXd rest = directions(Eigen::all, others);
+  MotionThroughEvents motion = motion_of(subject, begins), untold = motion_of(subject, begins),
+                      without = motion_of(subject, {});
+  EXPECT_THROW(propagate_forward(untold, 10, rest), EventWithoutDerivative);
+  motion.begin_along(rest);
+  const Propagated found = propagate_forward(motion, 10, rest), expected = propagate_forward(without, 10, rest);
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_EQ(found.derivatives, expected.derivatives);
+}
+
 }  // namespace
 }  // namespace lagroid::multibody::bodies_tests

@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+"""`lagroid fit` finds the numbers that data were made with: parts_fits.py BIN EXAMPLES, as parts.py."""
+import json
+import pathlib
+import random
+import re
+import sys
+import tempfile
+import unittest
+
+from parts import examples, of_part, rows_of, run
+
+
+class Fits(unittest.TestCase):
+    def measured(self, folder, name, noise=0.0, seed=1, *settings):
+        """The rows of a pendulum's run, with normal errors in q and p, as a file."""
+        out = pathlib.Path(folder) / f"{name} run"
+        told = run(of_part("pendulum"), "run", examples / "pendulum.toml", "--set", "time.steps=200", *settings, "--out", out)
+        self.assertEqual(told.returncode, 0, told.stderr)
+        draw = random.Random(seed)
+        rows = rows_of(out / "trajectory.csv")
+        file = pathlib.Path(folder) / f"{name}.csv"
+        lines = ["t,q,p,temperature"]
+        for i, row in enumerate(rows):
+            q, p = (repr(float(row[key]) + noise * draw.gauss(0, 1)) for key in ("q", "p"))
+            lines.append(f"{row['t']},{q},{'' if i % 7 == 3 else p},20")  # some momenta are missing
+        file.write_text("\n".join(lines) + "\n")
+        return file
+
+    def fitted(self, *words, code=0):
+        told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", *words, "--json")
+        self.assertEqual(told.returncode, code, told.stderr + told.stdout)
+        return json.loads(told.stdout)
+
+    def test_parameters_come_back_from_what_was_measured(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.measured(folder, "exact", 0.0, 1, "--set", "parameters.length=1.3", "--set", "parameters.mass=0.8")
+            found = self.fitted(data, "--wrt", "parameters.length,parameters.mass,initial")
+            value = {each["name"]: each["value"] for each in found["unknowns"]}
+            self.assertEqual(found["status"], "converged")
+            self.assertAlmostEqual(value["parameters.length"], 1.3, delta=1e-9)
+            self.assertAlmostEqual(value["parameters.mass"], 0.8, delta=1e-9)
+            self.assertEqual((found["undetermined"], found["ignored"]), ([], ["temperature"]))
+            # The run's own file of numbers tells the same.
+            binary = next(pathlib.Path(folder).rglob("trajectory.h5"))
+            same = self.fitted(binary, "--wrt", "parameters.length,parameters.mass,initial", "--of", "q,p")
+            self.assertEqual([round(each["value"], 9) for each in same["unknowns"]],
+                             [round(each["value"], 9) for each in found["unknowns"]])
+            # Angles alone know of no mass; and of length and gravity their ratio.
+            found = self.fitted(data, "--of", "q", "--wrt", "parameters", "--set", "initial.momentum=[0]")
+            self.assertEqual(len(found["undetermined"]), 2)
+
+    def test_what_is_fitted_is_as_far_off_as_its_deviation_says(self):
+        with tempfile.TemporaryDirectory() as folder:
+            squares, counts, whites = 0.0, 0, 0
+            for seed in range(12):
+                data = self.measured(folder, f"noisy{seed}", 0.01, seed, "--set", "parameters.length=1.1")
+                found = self.fitted(data, "--wrt", "parameters.length,initial.momentum", "--sigma", "q=0.01,p=0.01")
+                self.assertAlmostEqual(found["scale"], 1, delta=0.2)
+                whites += sum(each["white"] for each in found["columns"])
+                length = found["unknowns"][1]
+                self.assertEqual(length["name"], "parameters.length")
+                squares += ((length["value"] - 1.1) / length["deviation"]) ** 2
+                counts += 1
+            self.assertGreaterEqual(whites, 22)
+            # Chi squared of twelve: outside of these once in a thousand.
+            self.assertTrue(2.2 < squares < 33, squares)
+
+    def test_the_pendulum_of_the_page_is_found(self):
+        told = run(of_part("damped_pendulum"), "fit", examples / "damped_pendulum.toml", examples / "measured_pendulum.csv",
+                   "--wrt", "initial,parameters.length,parameters.damping", "--sigma", "q=0.01", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        for each, made in zip(found["unknowns"], (2, 0, 1.24, 0.083)):
+            self.assertLess(abs(each["value"] - made), 4 * each["deviation"], each)
+        page = (examples.parent / "docs" / "fit.md").read_text()
+        for each in found["unknowns"]:
+            shown = re.search(re.escape(each["name"]) + r" +([-.e\d]+) +([-.e\d]+)", page)
+            self.assertAlmostEqual(float(shown[1]), each["value"], delta=1e-3 * each["deviation"])
+            self.assertAlmostEqual(float(shown[2]), each["deviation"], delta=1e-2 * each["deviation"])
+        self.assertTrue(found["columns"][0]["white"])
+
+    def test_runs_share_parameters_and_have_their_own_starts(self):
+        with tempfile.TemporaryDirectory() as folder:
+            files = [self.measured(folder, f"run{i}", 0.0, 1, "--set", "parameters.length=1.2", "--set",
+                                   f"initial.momentum=[{p}]") for i, p in enumerate((0.1, -0.3))]
+            found = self.fitted(*files, "--wrt", "parameters.length,initial.momentum")
+            value = {each["name"]: each["value"] for each in found["unknowns"]}
+            self.assertAlmostEqual(value["initial.p of run 1"], 0.1, delta=1e-9)
+            self.assertAlmostEqual(value["initial.p of run 2"], -0.3, delta=1e-9)
+            self.assertAlmostEqual(value["parameters.length"], 1.2, delta=1e-9)
+
+    def test_outliers_are_borne_bounds_kept_and_residuals_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.measured(folder, "outliers", 0.001, 3, "--set", "parameters.length=1.2")
+            lines = data.read_text().splitlines()
+            for k in range(10, 200, 17):
+                t, q, *others = lines[k].split(",")
+                lines[k] = ",".join([t, repr(float(q) + 0.5), *others])
+            data.write_text("\n".join(lines) + "\n")
+            words = (data, "--wrt", "parameters.length", "--sigma", "q=0.001,p=0.001")
+            off = [abs(self.fitted(*words, *more)["unknowns"][0]["value"] - 1.2) for more in ((), ("--huber", "2"))]
+            self.assertLess(off[1], 0.2 * off[0])
+            table = pathlib.Path(folder) / "residuals.csv"
+            bounded = self.fitted(*words, "--bounds", "parameters.length=0.9:1.1", "--residuals", table, "--starts", "3")
+            self.assertTrue(bounded["unknowns"][0]["at_bound"])
+            self.assertAlmostEqual(bounded["unknowns"][0]["value"], 1.1, delta=1e-9)
+            self.assertEqual(len(bounded["other_costs"]), 2)
+            rows = rows_of(table)
+            self.assertEqual(set(row["column"] for row in rows), {"q", "p"})
+            self.assertFalse(all(each["white"] for each in bounded["columns"]))
+            text = run(of_part("pendulum"), "fit", examples / "pendulum.toml", *words, "--bounds",
+                       "parameters.length=0.9:1.1")
+            self.assertIn("not as independent errors do", text.stdout)
+            self.assertIn("at its bound", text.stdout)
+
+    def test_data_that_cannot_be_fitted_are_refused_in_a_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def refused(text, said, *words):
+                file = pathlib.Path(folder) / "bad.csv"
+                file.write_text(text)
+                told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", file, *words)
+                self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+                self.assertIn(said, told.stderr)
+
+            refused("q,p\n1,2\n", "no column t, the time")
+            refused("t,height\n0,1\n", "nothing in it is a column of the run; there are q, p")
+            refused("t,q\n0.012345,1\n", "row 2: t = 0.012345 is no node of the run")
+            refused("t,q\n0,one\n", "row 2: \"one\" is no number")
+            refused("t,q\n0,1\n", "parameters.colour: nothing of that name", "--wrt", "parameters.colour")
+            refused("t,q\n0,1\n", "COLUMN=SIGMA", "--sigma", "q")
+            refused("t,q\n0,1\n", "no such column of the run", "--sigma", "height=1")
+            refused("t,q\n0,1\n", "it has bounds, but is not to be fitted", "--wrt", "initial", "--bounds",
+                    "parameters.length=1:2")
+            refused("t,q\n0,1\n", "which is not from 2 to 3", "--bounds", "parameters.length=2:3")
+            refused("", "no header; the first line names t and columns of the run")
+
+    def test_parameters_of_formulas_are_fitted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene, data = examples / "elastic_pendulum.toml", pathlib.Path(folder) / "run"
+            short = ("--set", 'initial={position=[1.1,0.8],momentum=[0.1,-0.2]}', "--set", "time.steps=200", "--set",
+                     "output.every=5")
+            told = run(of_part("formula"), "run", scene, *short, "--out", data)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            rows = rows_of(data / "trajectory.csv")
+            measured = pathlib.Path(folder) / "measured.csv"
+            with open(measured, "w") as file:
+                file.write("t,r,theta\n" + "".join(f"{row['t']},{row['r']},{row['theta']}\n" for row in rows))
+            told = run(of_part("formula"), "fit", scene, measured, *short, "--set", "parameters.k=70", "--set",
+                       "parameters.g=9", "--wrt", "parameters.k,parameters.g", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            for unknown, value in zip(json.loads(told.stdout)["unknowns"], (80, 9.81)):
+                self.assertAlmostEqual(unknown["value"], value, delta=1e-9)
+
+    def test_parameters_of_poisson_systems_are_fitted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene, data = examples / "lotka_volterra.toml", pathlib.Path(folder) / "run"
+            short = ("--set", "time.steps=300", "--set", "output.every=10")
+            told = run(of_part("poisson"), "run", scene, *short, "--out", data)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            rows = rows_of(data / "trajectory.csv")
+            measured = data / "measured.csv"
+            with open(measured, "w") as file:
+                file.write("t,x,y\n" + "".join(f"{row['t']},{row['x']},{row['y']}\n" for row in rows))
+            told = run(of_part("poisson"), "fit", scene, measured, *short, "--set", "parameters.growth=1.1", "--set",
+                       "parameters.death=0.9", "--wrt", "parameters.growth,parameters.death", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertLess(found["cost"], 1e-20, told.stdout)
+            self.assertEqual(len(found["unknowns"]), 2)
+            for unknown in found["unknowns"]:
+                self.assertAlmostEqual(unknown["value"], 1, delta=1e-9)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
