@@ -40,6 +40,7 @@ struct RunOptions : SceneOptions {
 
 /// The scene of a run that is taken up, of which only the number of steps may change.
 Section kept_scene(const std::string& folder, const std::vector<std::string>& overrides) {
+  refuse_found_control(folder);
   const std::string text = Checkpoint::scene_of(folder);
   for (const std::string& given : overrides)
     if (!given.starts_with("time.steps="))

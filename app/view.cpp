@@ -1,8 +1,8 @@
 #include "view.hpp"
 
+#include "reading/data_set.hpp"
 #include "viewer/assets.hpp"
 
-#include <lagroid/run/files/hdf5_file.hpp>
 #include <lagroid/run/files/kept_file.hpp>
 #include <lagroid/run/files/nesting.hpp>
 #include <lagroid/run/files/output.hpp>
@@ -11,15 +11,12 @@
 #include <lagroid/run/reports/report.hpp>
 #include <lagroid/run/reports/text.hpp>
 
-#include <H5Cpp.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <new>
 #include <optional>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -65,19 +62,6 @@ template <class Use> auto from_summary(const std::string& run, const Use& use) {
   }
 }
 
-std::string text_attribute(const H5::H5Object& object, const char* name) {
-  std::string text;
-  const H5::Attribute attribute = object.openAttribute(name);
-  attribute.read(attribute.getStrType(), text);
-  return text;
-}
-
-std::vector<double> numbers(const H5::DataSet& set) {
-  std::vector<double> values(std::size_t(set.getSpace().getSimpleExtentNpoints()));
-  if (!values.empty()) set.read(values.data(), H5::PredType::NATIVE_DOUBLE);
-  return values;
-}
-
 /// Which rows of so many are shown: evenly spaced ones, and the last.
 std::vector<std::size_t> chosen_rows(std::size_t rows, std::size_t most) {
   std::vector<std::size_t> chosen;
@@ -93,57 +77,27 @@ struct Columns {
   std::size_t recorded = 0;
 };
 
-/// Column labels stand in attributes, joined by ", ".
-std::vector<std::string> labels_of(const H5::DataSet& set) {
-  std::vector<std::string> labels;
-  for (std::size_t part = 0; part == 0 || set.attrExists(components_attribute(part)); ++part) {
-    const std::string joined = text_attribute(set, components_attribute(part).c_str());
-    for (std::size_t from = 0; from <= joined.size();) {
-      const std::size_t to = std::min(joined.find(", ", from), joined.size());
-      labels.push_back(joined.substr(from, to - from));
-      from = to + 2;
-    }
-  }
-  return labels;
-}
-
 Columns read_columns(const fs::path& file, long most_rows) {
-  H5::Exception::dontPrint();
+  Columns columns;
+  std::vector<std::size_t> rows;
   try {
-    const H5::H5File in(file.string(), H5F_ACC_RDONLY);
-    const std::vector<double> time = numbers(in.openDataSet("time"));
-    const auto rows = chosen_rows(time.size(), std::size_t(most_rows));
-    Columns columns;
-    columns.recorded = time.size();
-    for (const std::size_t row : rows) columns.time.push_back(time[row]);
-    for (hsize_t i = 0; i < in.getNumObjs(); ++i) {
-      const std::string name = in.getObjnameByIdx(i);
-      if (name == "time" || in.childObjType(name) == H5O_TYPE_GROUP) continue;
-      const H5::DataSet set = in.openDataSet(name);
-      const std::vector<double> values = numbers(set);
-      const std::vector<std::string> labels = labels_of(set);
-      const std::size_t first = text_attribute(set, "rows") == "one per recorded arrow" ? 1 : 0;
-      if (values.size() != (time.size() - std::min(first, time.size())) * labels.size())
-        throw RunError(
-            fmt::format("{}: \"{}\" has another number of rows than time; run the scene again", file.string(), name));
-      for (std::size_t c = 0; c < labels.size(); ++c) {
+    read_series(file, [&](const std::vector<double>& time, const RecordedSeries& series) {
+      if (columns.recorded == 0) {
+        columns.recorded = time.size();
+        rows = chosen_rows(time.size(), std::size_t(most_rows));
+        for (const std::size_t row : rows) columns.time.push_back(time[row]);
+      }
+      for (std::size_t c = 0; c < series.columns.size(); ++c) {
         OrderedJson column = OrderedJson::array();
         for (const std::size_t row : rows)
-          column.push_back(row < first ? OrderedJson() : OrderedJson(values[(row - first) * labels.size() + c]));
-        columns.by_label[labels[c]] = std::move(column);
+          column.push_back(row < series.first ? OrderedJson() : OrderedJson(series.at(row, c)));
+        columns.by_label[series.columns[c]] = std::move(column);
       }
-    }
-    return columns;
-  } catch (const std::length_error&) {  // more rows than any memory holds
-    throw RunError(fmt::format("{}: is damaged; run the scene again", file.string()));
-  } catch (const std::bad_alloc&) {
-    throw RunError(
-        fmt::format("{}: does not fit into the memory, or is damaged; run the scene again with a larger "
-                    "output.every",
-                    file.string()));
-  } catch (const H5::Exception& error) {
-    throw RunError(fmt::format("{}: HDF5: {}; run the scene again", file.string(), error.getDetailMsg()));
+    });
+  } catch (const DataError& error) {
+    throw RunError(fmt::format("{}; run the scene again", error.what()));
   }
+  return columns;
 }
 
 std::string filled(std::string_view page, const std::vector<std::pair<std::string_view, std::string_view>>& places) {
@@ -198,10 +152,19 @@ OrderedJson data_of_page(const OrderedJson& summary, const ViewOptions& options)
 std::optional<OutputFolder> folder_there(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) return std::nullopt;
+  refuse_found_control(folder);
   return folder_of_run(folder);
 }
 
 }  // namespace
+
+void refuse_found_control(const fs::path& folder) {
+  const auto summary = read_json(contents(folder / "summary.json").value_or(""));
+  if (summary && summary->is_object() && summary->contains("problem") && summary->contains("groupoid"))
+    throw RunError(fmt::format(
+        "{}: holds what lagroid control found, and no run; its picture is {}, and its numbers are in trajectory.csv",
+        folder.string(), (folder / "plot.svg").string()));
+}
 
 fs::path write_view(const ViewOptions& options) {
   const auto held = folder_there(options.run);

@@ -9,6 +9,9 @@
 
 namespace lagroid::app {
 
+/// Throws RunError where the folder holds what `lagroid control` found, which is no run.
+void refuse_found_control(const std::filesystem::path& folder);
+
 struct ViewOptions {
   std::string run;        ///< the folder
   long most_rows = 4000;  ///< of the trajectory on the page

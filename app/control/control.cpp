@@ -60,6 +60,7 @@ int control(const ControlCommandOptions& options) {
       return !guard.interrupted();
     });
   }
+  found.interrupted = guard.interrupted();
   std::string text = control_text(found);
   auto json = control_json(found);
   if (options.out) {
@@ -70,7 +71,7 @@ int control(const ControlCommandOptions& options) {
     text += "  (no files written; --out DIR writes trajectory, plot and summary)\n";
   }
   print(options.json ? json_text(json) + "\n" : text);
-  if (guard.interrupted()) {
+  if (found.interrupted) {
     complain(fmt::format("{}: interrupted after {} iterations", options.scene, found.iterations));
     return exit_interrupted;
   }

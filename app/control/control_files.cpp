@@ -122,8 +122,9 @@ namespace {
 std::string loop_text(const ControlResult& found) {
   const LoopSummary& loop = *found.loop;
   const ControlReport& r = found.report;
-  std::string out = fmt::format("{} on {}, in a closed loop that looks {} stages ahead: {}\n", found.problem,
-                                found.groupoid, loop.stages, to_string(r.status));
+  std::string out =
+      fmt::format("{} on {}, in a closed loop that looks {} stages ahead: {}{}\n", found.problem, found.groupoid,
+                  loop.stages, to_string(r.status), found.interrupted ? ", interrupted" : "");
   out +=
       fmt::format("  samples          {} in {:.12g}; {} not converged in their iterations, {} planned from nothing\n",
                   loop.samples, found.times.back(), loop.not_converged, loop.restarts);
@@ -175,6 +176,8 @@ std::string crossover_text(const CrossoverReport& r) {
       return "  active sets      not to be told, for a multiplier vanishes with its inequality: an interior point\n";
     case CrossoverStatus::not_improved:
       return "  active sets      no smaller residual: an interior point\n";
+    case CrossoverStatus::interrupted:
+      return "  active sets      interrupted: an interior point\n";
   }
   return "";
 }
@@ -203,6 +206,7 @@ std::string control_text(const ControlResult& found) {
   for (const auto& [status, count] : found.outcomes) outcomes.push_back(fmt::format("{} {}", count, to_string(status)));
   out += fmt::format("  starts           {}; {} iterations in all, {} of the best; {}\n", fmt::join(outcomes, ", "),
                      found.iterations, r.iterations, duration(found.seconds));
+  if (found.interrupted) out += "  interrupted      what is here is the best till then\n";
   for (const auto& each : r.worst) out += fmt::format("  violated         {}\n", in_words(found, each));
   return out;
 }
@@ -211,6 +215,7 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   const ControlReport& r = found.report;
   nlohmann::ordered_json out;
   out["status"] = to_string(r.status);
+  out["interrupted"] = found.interrupted;
   out["method"] = found.by_ipopt ? "ipopt" : "interior_point";
   if (!r.message.empty()) out["message"] = r.message;
   out["problem"] = found.problem;

@@ -65,6 +65,7 @@ struct ControlResult {
   std::map<ControlStatus, int> outcomes;  ///< of the starts
   int iterations = 0;                     ///< of all starts
   double seconds = 0;                     ///< of processor time
+  bool interrupted = false;               ///< by a signal: what is here is the best till then
   bool by_ipopt = false;                  ///< not by the interior point method
   std::optional<LoopSummary> loop = {};   ///< of a scene with [loop]: rows are those of the closed loop
 };
@@ -79,7 +80,7 @@ class ControlProblem {
   virtual std::vector<std::string> states() const = 0;
   virtual std::vector<std::string> controls() const = 0;
   virtual std::vector<Key> parameters() const = 0;
-  /// Reads the scene and solves it. `keep_going` is called before each start. Throws SceneError.
+  /// Reads the scene and solves it. `keep_going` is asked in every iteration. Throws SceneError.
   virtual ControlResult solve(const Section& scene, const std::function<bool(int start)>& keep_going) const = 0;
   /// Reads the scene, solves it, and tests the laws of the problem and of its solution. Throws SceneError.
   virtual Certificate certify(const Section& scene, int samples, std::uint64_t seed) const = 0;

@@ -5,6 +5,7 @@
 #include "../keys/parameter.hpp"
 #include "../reading/kinds.hpp"
 #include "control_scene.hpp"
+#include "problems/states_of_problem.hpp"
 #include "scene_loop.hpp"
 
 #include <lagroid/solvers/control/control_loop.hpp>
@@ -13,7 +14,12 @@
 #include <lagroid/solvers/processor_time.hpp>
 #include <lagroid/systems/control/flows/flow_states.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,7 +46,13 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   }
   using Parametrised = std::remove_reference_t<decltype(parametrised_of(std::declval<Sys&>()))>;
 
-  ControlProblemOf(std::string_view name, std::string_view summary) : name_(name), summary_(summary) {}
+  /// Of each inequality that may be one of states the parameter that sets it.
+  using Limits = std::array<std::string_view, std::size_t(Sys::inequalities)>;
+
+  ControlProblemOf(std::string_view name, std::string_view summary) requires(Sys::inequalities == 0)
+      : name_(name), summary_(summary) {}
+  ControlProblemOf(std::string_view name, std::string_view summary, const Limits& limits)
+      : name_(name), summary_(summary), limits_(limits) {}
   std::string_view name() const override { return name_; }
   std::string_view summary() const override { return summary_; }
   std::vector<std::string> states() const override { return {Sys::states.begin(), Sys::states.end()}; }
@@ -89,6 +101,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   }
   std::unique_ptr<SceneLoop> loop(const Section& scene, const std::function<bool(int)>& keep_going) const override {
     const Posed posed = read(scene);
+    require_loop(scene);
     if (!posed.scene.phases.empty()) scene.fail("phase", "a loop looks ahead in one phase; give [horizon]");
     if (posed.task.start_condition || posed.task.end_condition)
       scene.fail("boundary", "a loop is between states that are given; leave out free_start and free_end");
@@ -125,7 +138,50 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     pose_ends(scene, posed);
     for (const PhaseScene& phase : read.phases) task.phases.push_back(posed_phase(posed, phase));
     scene.finish();
+    if (read.loop) require_loop(scene);
+    require_end(scene, posed, Ends::start);
+    require_end(scene, posed, Ends::end);
     return posed;
+  }
+  /// A loop begins anew at each state, from where an end with another momentum is out of reach.
+  static void require_loop(const Section& scene) {
+    if constexpr (requires { Sys::conserved; }) {
+      const auto first = std::find(Sys::conserved.begin(), Sys::conserved.end(), true);
+      scene.fail(std::string(keys::control),
+                 fmt::format("a loop is between states that are given, and {} is conserved, whatever the controls; "
+                             "solve it without [loop]",
+                             Sys::states[std::size_t(first - Sys::conserved.begin())]));
+    }
+  }
+  enum class Ends { start, end };
+  /// What is wrong with an end, before anything is solved: an inequality that does not hold there, or that the motion
+  /// can wait there for as long as it likes.
+  void require_end(const Section& scene, const Posed& posed, Ends which) const {
+    const bool at_start = which == Ends::start;
+    const char* const key = at_start ? "start" : "end";
+    const ControlTask<Sys>& task = posed.task;
+    const std::vector<bool>& free = at_start ? posed.scene.free_start : posed.scene.free_end;
+    if (std::any_of(free.begin(), free.end(), [](bool each) { return each; })) return;
+    const std::vector<ControlPhase<Sys>> phases = phases_of(task, posed.scene.stages);
+    const ControlPhase<Sys>& phase = at_start ? phases.front() : phases.back();
+    const G& groupoid = phase.system.groupoid;
+    const auto node = at_start ? groupoid.source(task.boundary) : groupoid.target(task.boundary);
+    if constexpr (Sys::inequalities > 0)
+      if (const auto broken = phase.inequalities_hold ? broken_at(phase.system, node) : std::nullopt)
+        scene.section("boundary", "")
+            .fail(key, fmt::format(
+                           "what parameters.{} asks for does not hold there; give a state where it does, or change it",
+                           limits_[*broken]));
+    if (!phase.duration_is_free || std::isfinite(phase.longest) || !can_wait(phase, node)) return;
+    const std::vector<Key> keys = parameters();
+    const bool can_cost = std::any_of(keys.begin(), keys.end(), [](const Key& each) { return each.name == "cost"; });
+    const bool in_phases = !posed.scene.phases.empty();
+    const Section table = !in_phases ? scene.section("horizon", "")
+                          : at_start ? posed.scene.phases.front().table
+                                     : posed.scene.phases.back().table;
+    table.fail("free", fmt::format("the motion can wait at its {} at no cost, so that no duration is the best: {}{}",
+                                   key, can_cost ? "let time be the cost (parameters.cost = \"time\"), or " : "",
+                                   in_phases ? "give the duration a range" : "leave out free"));
   }
   template <class Bounded> static void set_bounds(Bounded& of, const ControlBounds& bounds) {
     for (int i = 0; i < int(bounds.size()); ++i) std::tie(of.lower(i), of.upper(i)) = bounds[std::size_t(i)];
@@ -237,7 +293,10 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       state_ = Eigen::Map<const State>(state.data());
       report_ = loop_.follow(arrow(system_, state_, end_), usable_);
     }
-    std::vector<double> control() const override { return {loop_.control().begin(), loop_.control().end()}; }
+    std::vector<double> control() const override {
+      const Vector<double, Sys::controls> u = loop_.control();
+      return {u.begin(), u.end()};
+    }
     double cost() const override { return system_.cost(plan().arrows.front(), loop_.control(), plan().step()); }
     std::vector<double> predicted() const override {
       const State next = States::reached(state_, plan().arrows.front());
@@ -319,6 +378,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
 
   std::string_view name_;
   std::string_view summary_;
+  Limits limits_{};
 };
 
 }  // namespace lagroid::app

@@ -16,7 +16,9 @@ bool Section::has(std::string_view key) const { return find(key) != nullptr; }
 double Section::checked(std::string_view key, const toml::node& node, const NumberRule& rule) const {
   const auto value = node.is_integer() ? std::optional(double(**node.as_integer())) : node.value<double>();
   if (!node.is_number() || !value) fail(key, fmt::format("expected a number, got {}", type_name(node)));
-  if (!std::isfinite(*value)) fail(key, fmt::format("must be finite, got {}", *value));
+  if (!std::isfinite(*value))
+    fail(key, fmt::format("must be finite, got {}{}", *value,
+                          std::isinf(*value) ? "; for no bound leave it out, or give one that is never reached" : ""));
   if (!rule.holds(*value)) fail(key, fmt::format("must be {}, got {}", rule.words, *value));
   return *value;
 }

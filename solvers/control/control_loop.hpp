@@ -108,8 +108,11 @@ template <class Sys> class ControlLoop {
     return groupoid.compose(groupoid.inverse(groupoid.tau(groupoid.source(rest), off)), rest);
   }
 
-  /// The control to be applied until the next sample.
-  const Vector<double, Sys::controls>& control() const { return plan().controls.front(); }
+  /// The control to be applied until the next sample: that of the plan, within its bounds even where the plan, of a
+  /// solve that did not converge, is not.
+  Vector<double, Sys::controls> control() const {
+    return plan().controls.front().cwiseMax(task_.lower).cwiseMin(task_.upper);
+  }
   const ControlTrajectory<Sys>& plan() const { return transcription_.trajectory(); }
   /// Of the calls of `advance`, `restart` and `follow`.
   const Latency& latency() const { return latency_; }

@@ -169,8 +169,8 @@ template <class Sys>
 using ControlSolver =
     std::function<ControlSolution<Sys>(const ControlTask<Sys>&, ControlTrajectory<Sys>, const ControlOptions&)>;
 
-/// Of a task in phases, their stages count and not `stages`. Before each start `keep_going(start)` decides whether it
-/// is made.
+/// Of a task in phases, their stages count and not `stages`. Before each start and in its every iteration
+/// `keep_going(start)` decides whether it goes on.
 template <class Sys>
 ControlSearch<Sys> search_control(
     const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {},

@@ -22,6 +22,7 @@
 
 #include <lagroid/core/groupoid.hpp>
 #include <lagroid/solvers/control/node_condition.hpp>
+#include <lagroid/solvers/control/stage_rows.hpp>
 
 #include <algorithm>
 #include <array>
@@ -112,6 +113,30 @@ template <class Sys> struct ControlTrajectory {
     return sum;
   }
   double duration() const { return time(long(arrows.size())); }
+};
+
+/// How large the numbers are that a displacement of a trajectory changes (Transcription::sizes_of_displaced).
+template <class Sys>
+void sizes_along(const typename Sys::GroupoidType& groupoid, const ControlTrajectory<Sys>& path,
+                 TrajectoryDisplacement& out) {
+  set_all(out.nodes, 0);
+  for (std::size_t k = 0; k < path.arrows.size(); ++k) {
+    const auto scale = groupoid.coordinate_scale(path.arrows[k]);
+    for (int i = 0; i < Sys::dimension; ++i) {
+      double& source = out.nodes[long(k)][i];
+      source = std::max(source, scale(i));
+      out.nodes[long(k) + 1][i] = scale(i);
+    }
+    for (int i = 0; i < Sys::controls; ++i) out.controls[long(k)][i] = std::abs(path.controls[k](i));
+  }
+  std::fill(out.durations.begin(), out.durations.end(), 1.0);
+}
+
+/// What a system is of a stage, over a scalar.
+template <class Sys, class S> struct StageFunctions {
+  S cost;
+  Vector<S, Sys::equalities> equality;
+  Vector<S, Sys::inequalities> inequality;
 };
 
 /// A part of a trajectory with a duration, bounds and parameters of its own. The next begins at the node where it ends.

@@ -16,11 +16,13 @@
 /// allocation in an iteration but of the filter's entries beyond a thousand. Nothing throws.
 ///
 /// Waechter and Biegler, Math. Program. 106 (2006): filter, inertia correction, second-order corrections; the
-/// restoration is a primal-dual iteration on the smoothed sum of violations.
+/// restoration is a primal-dual iteration on the smoothed sum of violations. What rounding leaves of a constraint or of
+/// the gradient (KktRounding) is no violation and no residual, whatever the units.
 
 #include <lagroid/solvers/control/optimality/kkt_residual.hpp>
 #include <lagroid/solvers/control/stage_kkt.hpp>
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,7 +35,8 @@ enum class ControlStatus {
   stagnated,   ///< of a trajectory that satisfies the constraints, no step is better: rounding, or a degenerate minimum
   not_converged,  ///< the iterations are used up
   singular,       ///< no shift of the matrix gave a direction
-  not_finite      ///< a value at the start
+  not_finite,     ///< a value at the start
+  interrupted     ///< `keep_going` said so
 };
 
 constexpr std::string_view to_string(ControlStatus status) {
@@ -50,6 +53,8 @@ constexpr std::string_view to_string(ControlStatus status) {
       return "singular";
     case ControlStatus::not_finite:
       return "not_finite";
+    case ControlStatus::interrupted:
+      return "interrupted";
   }
   return "";
 }
@@ -61,6 +66,7 @@ struct ControlOptions {
   double least_slack = 1e-2;      ///< of an inequality at the start
   double resumed_barrier = 1e-4;  ///< mu, at first, where `resume` goes on
   bool crossover = true;          ///< whether `solve_control` goes on to the active inequalities (crossover.hpp)
+  std::function<bool()> keep_going = {};  ///< asked in every iteration; false ends with the last iterate
 };
 
 /// A constraint that is violated: row `row` of phi (equality) or gamma at a stage.
@@ -120,6 +126,7 @@ class InteriorPoint {
   void begin();
   void begin_again();
   void iterate(int most_iterations);
+  bool goes_on();
   void evaluate();
   Merit merit(const StageValues& values, const StageRows& slacks) const;
   double scaled_error(double barrier);
@@ -132,6 +139,7 @@ class InteriorPoint {
   double fraction_to_boundary(const StageRows& at, const StageRows& along) const;
   double slope() const;
   Outcome line_search();
+  double merit_rounding(const Merit& now) const;
   void add_to_filter(const Merit& now);
   void take_trial(const Merit& now, const Merit& trial, double slope, double fraction);
   bool take_corrected(const Merit& now, double slope, double fraction);
@@ -168,10 +176,13 @@ class InteriorPoint {
   KktVector step_;
   KktVector first_step_;  // before a second-order correction
   StageRows first_slack_step_;
+  KktRounding rounding_;  // where the derivatives were evaluated
 
   double barrier_ = 0;
   double shift_ = 0;       // of the displacements' diagonal, in the last factorisation
   double last_shift_ = 0;  // the last that was not zero
+  double merit_rounding_ = 0;
+  bool gains_rounding_ = false;  // the last step, and no more
   std::vector<Merit> filter_;
   double largest_allowed_ = 0;  // violation
   double small_violation_ = 0;

@@ -7,7 +7,9 @@
 ///
 /// `found` has `minima`, `best_failure`, `outcomes` and `iterations` (ControlSearch), `options` has `starts`,
 /// `patience` and the `solver`'s (ControlSearchOptions). A start is given up after `patience` times the iterations of
-/// the slowest that has converged, at least a hundred; zero: none is. Solutions of the same cost to 1e-7 are the same.
+/// the slowest that has converged, at least a hundred; zero: none is. `keep_going(start)` is asked before each start
+/// but the first and in every iteration; where it says no, the search ends with what it has. Solutions of the same cost
+/// to 1e-7 are the same.
 
 #include <lagroid/solvers/control/interior_point.hpp>
 
@@ -25,14 +27,17 @@ void search_starts(Found& found, const Options& options, const std::function<boo
   int slowest = 0;
   for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
     ControlOptions solver = options.solver;
+    solver.keep_going = [&, i] { return keep_going(i) && (!options.solver.keep_going || options.solver.keep_going()); };
     if (slowest > 0 && options.patience > 0)
       solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
     auto solution = solve(i, solver);
     ++found.outcomes[solution.report.status];
     found.iterations += solution.report.iterations;
+    const bool is_last = solution.report.status == ControlStatus::interrupted;
     if (!solution.report.converged()) {
       if (i == 0 || !(found.best_failure.report.violation <= solution.report.violation))
         found.best_failure = std::move(solution);
+      if (is_last) break;
       continue;
     }
     slowest = std::max(slowest, solution.report.iterations);

@@ -167,6 +167,9 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     for (std::size_t i = 0; i < conditions_.size(); ++i) add_condition(i, lambda, out);
   }
 
+  void sizes_of_displaced(TrajectoryDisplacement& out) const override {
+    sizes_along(task_.system.groupoid, now_.path, out);
+  }
   void try_displacement(const TrajectoryDisplacement& by, double fraction) override {
     has_tried_ = true;
     const G& groupoid = task_.system.groupoid;
@@ -234,11 +237,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     Vector<S, Sys::controls> u;
     S h;
   };
-  template <class S> struct Functions {
-    S cost;
-    Vector<S, Sys::equalities> equality;
-    Vector<S, Sys::inequalities> inequality;
-  };
+  template <class S> using Functions = StageFunctions<Sys, S>;
 
   static bool inequalities_of(const ControlPhase<Sys>& phase) {
     if constexpr (requires { phase.system.has_inequalities(); })

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -107,6 +108,24 @@ TEST_F(Control, ALoopThatIsLostEndsAndSaysWhere) {
   EXPECT_NE(r.err.find("sample "), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("loop.iterations"), std::string::npos) << r.err;
   EXPECT_LT(nlohmann::json::parse(r.out).at("loop").at("samples").get<long>(), 20);
+}
+
+// Its first start takes a minute.
+TEST_F(Control, AnInterruptEndsASearchInTheMidstOfAStart) {
+  const std::string out = (folder_ / "out").string();
+  const auto before = std::chrono::steady_clock::now();
+  const Outcome r =
+      run(scene("arm_of_bodies") + " --set horizon.stages=1500 --out " + out, "timeout --preserve-status -s INT 2 ");
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(20));
+  EXPECT_EQ(r.code, 4) << r.err;
+  EXPECT_NE(r.err.find("interrupted after "), std::string::npos) << r.err;
+  const auto found = nlohmann::json::parse(std::ifstream(out + "/summary.json"));
+  EXPECT_EQ(found.at("interrupted"), true);
+  EXPECT_EQ(found.at("status"), "interrupted");
+  EXPECT_EQ(found.at("starts").at("interrupted"), 1);
+  std::ifstream text(out + "/summary.txt");
+  EXPECT_NE(std::string(std::istreambuf_iterator<char>(text), {}).find("  interrupted "), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(run(scene("fastest_stop") + " --json").out).at("interrupted"), false);
 }
 
 TEST_F(Control, WhatCannotBeIsTypedAndNamed) {
@@ -322,6 +341,87 @@ TEST_F(Control, IpoptFindsTheSameInTheSameFiles) {
   const Outcome loop = run(scene("control_loop") + " --set solver.method=ipopt");
   EXPECT_EQ(loop.code, 2);
   EXPECT_NE(loop.err.find("leave out solver.method"), std::string::npos) << loop.err;
+}
+
+TEST_F(Control, ADurationThatCostsNothingIsRefused) {
+  const std::string stop = scene("fastest_stop") + " --set 'parameters.cost=\"effort\"'";
+  // From rest to rest, and to rest: the motion waits there.
+  expect_refused(stop + " --set 'boundary.start=[0,0]' --set 'boundary.end=[3,0]'",
+                 "horizon.free: the motion can wait");
+  const Outcome slow = expect_refused(stop, "wait at its end at no cost");
+  EXPECT_NE(slow.err.find("parameters.cost = \"time\""), std::string::npos) << slow.err;
+  expect_refused(scene("falling_cat") + " --set horizon.free=true", "so that no duration is the best: leave out free");
+  const std::string phases =
+      "control = 'double_integrator'\n[boundary]\nstart = [0, 0]\nend = [3, 1]\n"
+      "[[phase]]\nduration = 2\nfree = true\n[[phase]]\nduration = 2\n";
+  expect_refused("control " + write(phases).string(), "phase.0.free: the motion can wait at its start");
+  // Between states of motion the time that costs least is one: 3, without a force.
+  const Outcome drift =
+      run(stop + " --json --set 'boundary.start=[0,1]' --set 'boundary.end=[3,1]' --set horizon.duration=2");
+  EXPECT_EQ(drift.code, 0) << drift.err;
+  EXPECT_NEAR(nlohmann::json::parse(drift.out).at("duration").get<double>(), 3, 1e-3);
+}
+
+TEST_F(Control, EndsThatBreakAnInequalityAreRefused) {
+  const auto refused = [&](const std::string& name, const std::string& set, const std::string& words) {
+    const Outcome r = expect_refused(scene(name) + " --set '" + set + "'", words);
+    EXPECT_NE(r.err.find("; give a state where it does"), std::string::npos) << r.err;
+  };
+  refused("around_a_disk", "boundary.start=[-0.5,0,0,0]", "boundary.start: what parameters.disk_radius asks for");
+  refused("around_a_disk", "boundary.end=[0.5,0,0,0]", "boundary.end: what parameters.disk_radius asks for");
+  refused("keep_out", "parameters.avoided=[0,0,1]", "boundary.start: what parameters.cone asks for");
+  refused("falling_cat", "boundary.end=[0,0,0,1.6,0,0,0,0,0,0]", "boundary.end: what parameters.largest_bend asks for");
+  refused("parallel_parking", "boundary.end=[0,1,0,0,0.7]", "boundary.end: what parameters.largest_steering asks for");
+  expect_refused(scene("keep_out") + " --set parameters.cone=4", "parameters.cone: must be from 0 to pi");
+  // On the rim it holds, and where an end is free is not known.
+  const std::string quick = " --set solver.starts=1 --set solver.iterations=2";
+  EXPECT_NE(run(scene("around_a_disk") + " --set 'boundary.end=[1,0,0,0]'" + quick).code, 2);
+  EXPECT_NE(
+      run(scene("around_a_disk") + " --set 'boundary.end=[0.5,0,0,0]' --set 'boundary.free_end=[\"x\"]'" + quick).code,
+      2);
+}
+
+TEST_F(Control, AnEndOfBodiesInsideOfAnObstacleIsRefused) {
+  const std::string mass =
+      "control = 'bodies'\n[[body]]\nname = 'mass'\nkind = 'planar'\nmass = 2\ninertia = 1\n"
+      "position = [0, 0]\n[[effect]]\nkind = 'force'\nname = 'east'\nbody = 'mass'\n"
+      "force = [1, 0, 0]\n[[effect]]\nkind = 'force'\nname = 'north'\nbody = 'mass'\n"
+      "force = [0, 1, 0]\n[[actuator]]\neffect = 'east'\n[[actuator]]\neffect = 'north'\n"
+      "[horizon]\nduration = 2\nstages = 20\n[solver]\nstarts = 1\n";
+  const auto disk = [](const std::string& at) {
+    return "[[constraint]]\nkind = 'disk'\nbody = 'mass'\nat = " + at + "\ncentre = [3, 0, 0]\nradius = 0.5\n";
+  };
+  const auto end = [](const std::string& place) { return "[[end]]\nbody = 'mass'\nat_rest = true\n" + place; };
+  const auto scene_of = [&](const std::string& text) { return "control " + write(mass + text).string(); };
+  expect_refused(scene_of(end("position = [3, 0]\n") + disk("[0, 0, 0]")), "inside at the end that [[end]] gives");
+  // A point beside the one that is given: where it ends is known with the angle alone.
+  const std::string beside = disk("[1, 0, 0]");
+  expect_refused(scene_of(end("position = [2, 0]\nangle = 0\n") + beside), "inside at the end that [[end]] gives");
+  EXPECT_EQ(run(scene_of(end("position = [2, 0]\nangle = 3\n") + beside)).code, 3);  // no torque turns it
+  EXPECT_EQ(run(scene_of(end("position = [3, 1]\n") + disk("[0, 0, 0]"))).code, 0);
+  // The end is found at any distance: of an effort of 12 d^2 m^2 / T^3.
+  for (const double d : {3.0, 1e3, 1e5}) {
+    const Outcome far = run(scene_of(end("position = [" + std::to_string(d) + ", 0]\n")) + " --json");
+    ASSERT_EQ(far.code, 0) << d << far.err;
+    EXPECT_NEAR(nlohmann::json::parse(far.out).at("cost").get<double>() / (6 * d * d), 1, 1e-2) << d;
+  }
+}
+
+TEST_F(Control, ALoopOfWhatConservesItsEndIsRefused) {
+  expect_refused(scene("falling_cat") + " --set loop.samples=3 --set solver.starts=1",
+                 "a loop is between states that are given, and M1 is conserved");
+}
+
+TEST_F(Control, ItsFolderIsNoRun) {
+  const std::string out = (folder_ / "found").string();
+  ASSERT_EQ(run(scene("fastest_stop") + " --out " + out).code, 0);
+  for (const char* command : {"view ", "plot ", "resume "})
+    expect_refused(command + out, "holds what lagroid control found, and no run; its picture is " + out + "/plot.svg");
+}
+
+TEST_F(Control, ABoundThatIsInfiniteIsToldWhatToWrite) {
+  expect_refused(scene("fastest_stop") + " --set 'bounds.u=[-1,inf]'",
+                 "must be finite, got inf; for no bound leave it out, or give one that is never reached");
 }
 
 TEST_F(Control, MistakesAreOneLine) {

@@ -1,10 +1,13 @@
 #include "bodies_keys.hpp"
 
+#include <lagroid/groupoids/groups/so3.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -89,6 +92,24 @@ template <class S> BasicSceneBodies<S> with_points(BasicSceneBodies<S> bodies, c
   return bodies;
 }
 
+/// What a table [[end]] gives of a body's places.
+struct EndOf {
+  std::string body;
+  Vec arm = Vec::Zero();  ///< of the point that is at
+  std::optional<Vec> place = {};
+  std::optional<multibody::Mat> attitude = {};
+
+  /// Where a point of a body is at the end, where this says so.
+  std::optional<Vec> place_of(const NamedBody& of, const Vec& point) const {
+    if (of.name != body) return std::nullopt;
+    const bool is_pivoted = of.linear < 0;
+    if (place && point == arm) return place;
+    if (attitude && is_pivoted) return Vec(of.place + *attitude * point);
+    if (attitude && place) return Vec(*place + *attitude * (point - arm));
+    return std::nullopt;
+  }
+};
+
 /// Reads [[end]] and [[constraint]], of points that are added to the bodies.
 class Reader {
  public:
@@ -97,12 +118,16 @@ class Reader {
   void read_end(const Section& table) {
     const NamedBody& body = bodies_.named(table, body_key.name, read_key(table, body_key));
     SceneEnd& end = out_.task.end;
+    EndOf& given = ends_.emplace_back(EndOf{body.name});
     if (table.has(position_key.name)) {
       const auto place = numbers(table, position_key, body.planar ? 2 : 3);
       const Attachment point = point_of(table, point_key, body);
       if (body.linear < 0 && point.arm.isZero(0))
         table.fail("position", fmt::format("\"{}\" is held at its pivot: give a point of it by at", body.name));
       for (int i = 0; i < int(place.size()); ++i) end.places.push_back({point.site, i, place[std::size_t(i)]});
+      given.arm = point.arm;
+      given.place = body.place;  // a planar body keeps its height
+      std::copy(place.begin(), place.end(), given.place->begin());
     } else if (table.has(point_key.name)) {
       table.fail(point_key.name, "is the point that position is of: give position, or leave it out");
     }
@@ -112,10 +137,12 @@ class Reader {
                    fmt::format("\"{}\" does not turn in space{}", body.name, body.planar ? ": give its angle" : ""));
       const auto q = read_key_or(table, attitude_key, {});
       end.turns.push_back({body.body.attitude, {q[0], q[1], q[2], q[3]}});
+      given.attitude = SO3::from_quaternion(end.turns.back().value);
     }
     if (table.has(angle_key.name)) {
       if (!body.planar) table.fail("angle", fmt::format("\"{}\" is no planar body", body.name));
       end.places.push_back({bodies_.scene.planar_place(body.body), 2, read_key_or(table, angle_key, 0)});
+      given.attitude = SO3::exp(Vec(0, 0, end.places.back().value));
     }
     const bool at_rest = read_key(table, at_rest_key);
     if (table.has(velocity_key.name) || (at_rest && body.linear >= 0)) {
@@ -161,6 +188,10 @@ class Reader {
     }
     if (keep_out.value(point.place) > multibody::limit_rounding)
       table.fail("", fmt::format("\"{}\" is inside at the start", body.name));
+    for (const EndOf& end : ends_)
+      if (const auto place = end.place_of(body, point.arm); place && keep_out.value(*place) > multibody::limit_rounding)
+        table.fail("", fmt::format("\"{}\" is inside at the end that [[end]] gives: change that, or the {}", body.name,
+                                   keep_out.kind == KeepOut::Kind::plane ? "plane" : "centre or the radius"));
     out_.task.keep_outs.push_back(keep_out);
   }
 
@@ -246,6 +277,7 @@ class Reader {
   SceneBodies& bodies_;
   BodiesControl& out_;
   std::vector<PointOf> points_;
+  std::vector<EndOf> ends_;
 };
 
 }  // namespace

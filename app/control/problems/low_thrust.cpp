@@ -6,7 +6,8 @@
 namespace lagroid::app {
 
 const ControlProblem& low_thrust_problem() {
-  static const ControlProblemOf<LowThrust> problem("low_thrust", "a spacecraft from one orbit to another");
+  static const ControlProblemOf<LowThrust> problem("low_thrust", "a spacecraft from one orbit to another",
+                                                   {"largest_thrust"});
   return problem;
 }
 

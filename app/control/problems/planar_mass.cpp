@@ -6,7 +6,8 @@
 namespace lagroid::app {
 
 const ControlProblem& planar_mass_problem() {
-  static const ControlProblemOf<PlanarMass> problem("planar_mass", "a mass in the plane that keeps out of a disk");
+  static const ControlProblemOf<PlanarMass> problem("planar_mass", "a mass in the plane that keeps out of a disk",
+                                                    {"largest_force", "disk_radius"});
   return problem;
 }
 

@@ -6,8 +6,8 @@
 namespace lagroid::app {
 
 const ControlProblem& rolled_ball_problem() {
-  static const ControlProblemOf<RolledBall> problem("rolled_ball",
-                                                    "a ball rolled on a plate, at a bounded speed, to an attitude");
+  static const ControlProblemOf<RolledBall> problem(
+      "rolled_ball", "a ball rolled on a plate, at a bounded speed, to an attitude", {"largest_speed"});
   return problem;
 }
 

@@ -7,7 +7,7 @@ namespace lagroid::app {
 
 const ControlProblem& satellite_turn_problem() {
   static const ControlProblemOf<SatelliteTurn> problem(
-      "satellite_turn", "a satellite turned by torques, its boresight kept off a direction");
+      "satellite_turn", "a satellite turned by torques, its boresight kept off a direction", {"cone"});
   return problem;
 }
 

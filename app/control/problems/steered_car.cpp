@@ -6,7 +6,8 @@
 namespace lagroid::app {
 
 const ControlProblem& steered_car_problem() {
-  static const ControlProblemOf<SteeredCar> problem("steered_car", "a car that accelerates and steers, as to park");
+  static const ControlProblemOf<SteeredCar> problem("steered_car", "a car that accelerates and steers, as to park",
+                                                    {"largest_steering", "largest_steering"});
   return problem;
 }
 

@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lagroid {
 
+namespace {
+
+/// So many iterations whose gain is rounding, and none with a smaller residual, are enough.
+constexpr int most_idle = 10;
+
+}  // namespace
+
 InteriorPoint::InteriorPoint(Transcription& transcription, ControlOptions options)
     : transcription_(transcription),
-      options_(options),
+      options_(std::move(options)),
       sizes_(transcription.sizes()),
       kkt_(transcription),
       values_(sizes_),
@@ -28,7 +36,8 @@ InteriorPoint::InteriorPoint(Transcription& transcription, ControlOptions option
       right_(sizes_),
       step_(sizes_),
       first_step_(sizes_),
-      first_slack_step_(multipliers_) {
+      first_slack_step_(multipliers_),
+      rounding_(sizes_) {
   filter_.reserve(1001);
 }
 
@@ -38,9 +47,10 @@ InteriorPoint::Merit InteriorPoint::merit(const StageValues& values, const Stage
   Merit sum;
   for (long k = 0; k < sizes_.stages; ++k) {
     sum.barrier += values.cost[k][0];
-    for (int i = 0; i < sizes_.equalities_of(k); ++i) sum.violation += std::abs(values.equality[k][i]);
+    for (int i = 0; i < sizes_.equalities_of(k); ++i)
+      sum.violation += above(rounding_.equality[k][i], values.equality[k][i]);
     for (int i = 0; i < sizes_.inequality; ++i) {
-      sum.violation += std::abs(values.inequality[k][i] + slacks[k][i]);
+      sum.violation += above(rounding_.inequality[k][i], values.inequality[k][i] + slacks[k][i]);
       sum.barrier -= barrier_ * std::log(slacks[k][i]);
     }
   }
@@ -56,23 +66,28 @@ double InteriorPoint::scaled_error(double barrier) {
   for (long k = 0; k < sizes_.stages; ++k) {
     for (int i = 0; i < sizes_.equalities_of(k); ++i) {
       sum += std::abs(costates_[k][i]);
-      violation = std::max(violation, std::abs(values_.equality[k][i]));
+      violation = std::max(violation, above(rounding_.equality[k][i], values_.equality[k][i]));
     }
     for (int i = 0; i < sizes_.inequality; ++i) {
       sum_of_bounds += multipliers_[k][i];
-      violation = std::max(violation, std::abs(values_.inequality[k][i] + slacks_[k][i]));
-      complementarity = std::max(complementarity, std::abs(slacks_[k][i] * multipliers_[k][i] - barrier));
+      const double known_to = rounding_.inequality[k][i];
+      violation = std::max(violation, above(known_to, values_.inequality[k][i] + slacks_[k][i]));
+      complementarity =
+          std::max(complementarity, above(multipliers_[k][i] * known_to, slacks_[k][i] * multipliers_[k][i] - barrier));
     }
   }
   const double bounds = double(sizes_.stages) * sizes_.inequality;
-  const double scale = std::max(100.0, (sum + sum_of_bounds) / (double(kkt_.equalities()) + bounds)) / 100;
+  // Multipliers of what nothing free can change may be as large as they like: they are no part of the gradient.
+  const double mean = std::min((sum + sum_of_bounds) / (double(kkt_.equalities()) + bounds), rounding_.largest_term());
+  const double scale = std::max(100.0, mean) / 100;
   const double scale_of_bounds = bounds > 0 ? std::max(100.0, sum_of_bounds / bounds) / 100 : 1;
-  return std::max({largest_entry(gradient_) / scale, violation, complementarity / scale_of_bounds});
+  return std::max({largest_entry(gradient_, rounding_) / scale, violation, complementarity / scale_of_bounds});
 }
 
 void InteriorPoint::evaluate() {
   transcription_.derivatives(costates_, multipliers_, derivatives_);
   lagrangian_gradient(transcription_, derivatives_, costates_, multipliers_, gradient_);
+  kkt_rounding(transcription_, derivatives_, costates_, multipliers_, rounding_);
 }
 
 // ---- the start
@@ -89,10 +104,10 @@ void InteriorPoint::begin() {
       multipliers_[k][i] = barrier_ / slacks_[k][i];
     }
   if (sizes_.inequality == 0) barrier_ = 0.1 * options_.tolerance;
+  least_squares_costates();
   const double violation = merit(values_, slacks_).violation;
   largest_allowed_ = 1e4 * std::max(1.0, violation);
   small_violation_ = 1e-4 * std::max(1.0, violation);
-  least_squares_costates();
 }
 
 void InteriorPoint::begin_again() {
@@ -227,6 +242,12 @@ void InteriorPoint::update_barrier() {
   }
 }
 
+/// False where the caller wants no more.
+bool InteriorPoint::goes_on() {
+  if (options_.keep_going && !options_.keep_going()) report_.status = ControlStatus::interrupted;
+  return report_.status != ControlStatus::interrupted;
+}
+
 /// From where it begins, until it is converged or knows why not.
 void InteriorPoint::iterate(int most_iterations) {
   most_iterations_ = most_iterations;
@@ -235,9 +256,19 @@ void InteriorPoint::iterate(int most_iterations) {
     return;
   }
   evaluate();
+  double least_error = HUGE_VAL;
+  int idle = 0;  // iterations since the last with a smaller residual
   for (; report_.iterations < most_iterations; ++report_.iterations) {
-    if (scaled_error(0) <= options_.tolerance) {
+    const double error = scaled_error(0);
+    if (error <= options_.tolerance) {
       report_.status = ControlStatus::converged;
+      return;
+    }
+    if (!goes_on()) return;
+    idle = error < 0.9 * least_error ? 0 : idle + 1;
+    least_error = std::min(error, least_error);
+    if (idle > most_idle && gains_rounding_) {
+      report_.status = ControlStatus::stagnated;
       return;
     }
     update_barrier();
@@ -246,12 +277,16 @@ void InteriorPoint::iterate(int most_iterations) {
       return;
     }
     if (line_search() == Outcome::stuck) {
-      if (largest_violation(sizes_, values_) <= options_.tolerance) {
+      if (largest_violation(sizes_, values_, rounding_) <= options_.tolerance) {
         report_.status = ControlStatus::stagnated;
         return;
       }
       if (!restore()) {
-        if (report_.iterations < most_iterations) report_.status = ControlStatus::infeasible;
+        if (goes_on() && report_.iterations < most_iterations) report_.status = ControlStatus::infeasible;
+        return;
+      }
+      if (report_.iterations >= most_iterations) {  // restoration took the rest of them
+        evaluate();
         return;
       }
     }

@@ -70,11 +70,10 @@ bool InteriorPoint::accepted_by_filter(const Merit& trial) const {
 /// violation is small, else one of the two.
 bool InteriorPoint::acceptable(const Merit& now, const Merit& trial, double slope, double fraction) const {
   if (!accepted_by_filter(trial)) return false;
-  const double round_off = 10 * epsilon * std::abs(now.barrier);
   if (now.violation <= small_violation_ && descends(now.violation, slope, fraction))
-    return trial.barrier <= now.barrier + armijo * fraction * slope + round_off;
+    return trial.barrier <= now.barrier + armijo * fraction * slope + merit_rounding_;
   return trial.violation <= (1 - filter_violation) * now.violation ||
-         trial.barrier <= now.barrier - filter_barrier * now.violation + round_off;
+         trial.barrier <= now.barrier - filter_barrier * now.violation + merit_rounding_;
 }
 
 void InteriorPoint::take(double fraction) {
@@ -95,10 +94,22 @@ void InteriorPoint::add_to_filter(const Merit& now) {
   filter_.push_back({(1 - filter_violation) * now.violation, now.barrier - filter_barrier * now.violation});
 }
 
+/// What the barrier function is known to: its own rounding, and where only rounding violates constraints, what that
+/// costs.
+double InteriorPoint::merit_rounding(const Merit& now) const {
+  double sum = KktRounding::ulps * std::abs(now.barrier);
+  if (now.violation > 0) return sum;
+  for (std::size_t i = 0; i < costates_.numbers().size(); ++i)
+    sum += std::abs(costates_.numbers()[i]) * rounding_.equality.numbers()[i];
+  for (std::size_t i = 0; i < multipliers_.numbers().size(); ++i)
+    sum += multipliers_.numbers()[i] * rounding_.inequality.numbers()[i];
+  return sum;
+}
+
 /// Takes a trial; the filter remembers where it came from unless the barrier function fell by Armijo's rule.
 void InteriorPoint::take_trial(const Merit& now, const Merit& trial, double slope, double fraction) {
-  const bool armijo_step =
-      descends(now.violation, slope, fraction) && trial.barrier <= now.barrier + armijo * fraction * slope;
+  const bool armijo_step = descends(now.violation, slope, fraction) &&
+                           trial.barrier <= now.barrier + armijo * fraction * slope + merit_rounding_;
   if (!armijo_step) add_to_filter(now);
   take(fraction);
 }
@@ -138,9 +149,12 @@ InteriorPoint::Outcome InteriorPoint::line_search() {
   const double slope = this->slope();
   const double most = fraction_to_boundary(slacks_, slack_step_);
 
+  merit_rounding_ = merit_rounding(now);
+  gains_rounding_ = now.violation == 0 && std::abs(slope) <= merit_rounding_;
+
   // Near the solution only round-off is left to compare. Elsewhere constraints that are dependent allow no step.
   if (largest_entry(step_.primal) < 10 * epsilon) {
-    if (largest_violation(sizes_, values_) > options_.tolerance) {
+    if (largest_violation(sizes_, values_, rounding_) > options_.tolerance) {
       add_to_filter(now);
       return Outcome::stuck;
     }

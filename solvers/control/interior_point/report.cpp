@@ -38,6 +38,8 @@ std::string advice_of(ControlStatus status, int max_iterations) {
                          max_iterations);
     case ControlStatus::singular:
       return "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
+    case ControlStatus::interrupted:
+      return "interrupted; the trajectory is the last iterate";
     case ControlStatus::not_finite:
       return "a cost or constraint of the trajectory to start from is not finite; give another";
   }

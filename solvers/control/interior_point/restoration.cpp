@@ -68,7 +68,7 @@ double InteriorPoint::smoothed_violation(const StageValues& at, double nu) const
 bool InteriorPoint::restore() {
   ++report_.restorations;
   const double start = merit(values_, slacks_).violation;
-  double smoothing = std::max(barrier_, largest_violation(sizes_, values_));
+  double smoothing = std::max(barrier_, largest_violation(sizes_, values_, rounding_));
   set_all(costates_, 0);
   set_all(multipliers_, 0.5);
   last_shift_ = 0;
@@ -77,12 +77,12 @@ bool InteriorPoint::restore() {
   double before = 0;
   // False where that was the least.
   const auto smooth_less = [&] {
-    if (smoothing <= std::max(1e-7, least_smoothing * largest_violation(sizes_, values_))) return false;
+    if (smoothing <= std::max(1e-7, least_smoothing * largest_violation(sizes_, values_, rounding_))) return false;
     smoothing *= 0.1;
     age = 0;
     return true;
   };
-  while (report_.iterations < most_iterations_) {
+  while (report_.iterations < most_iterations_ && goes_on()) {
     ++report_.iterations;
     evaluate();
     for (long k = 0; k < sizes_.stages; ++k) {
@@ -160,7 +160,7 @@ bool InteriorPoint::restore() {
   for (std::size_t i = 0; i < multipliers_.numbers().size(); ++i)
     multipliers_.numbers()[i] = std::min(1e3, barrier_ / slacks_.numbers()[i]);
   least_squares_costates();
-  return found || largest_violation(sizes_, values_) <= options_.tolerance;
+  return found || largest_violation(sizes_, values_, rounding_) <= options_.tolerance;
 }
 
 }  // namespace lagroid

@@ -30,6 +30,8 @@ ControlStatus status_of(Ipopt::ApplicationReturnStatus ended) {
       return ControlStatus::singular;
     case Ipopt::Invalid_Number_Detected:
       return ControlStatus::not_finite;
+    case Ipopt::User_Requested_Stop:
+      return ControlStatus::interrupted;
     default:
       return ControlStatus::not_converged;
   }
@@ -74,10 +76,11 @@ IpoptSolution solve_by_ipopt(TrajectoryChart& chart, const ControlOptions& optio
     set->SetNumericValue(tolerance, options.tolerance);
   if (application->Initialize() != Ipopt::Solve_Succeeded) throw std::runtime_error("IPOPT cannot be initialised");
 
-  Ipopt::SmartPtr<ControlProgram> program = new ControlProgram(chart, ControlProgram::Blocks::sparse);
+  Ipopt::SmartPtr<ControlProgram> program =
+      new ControlProgram(chart, ControlProgram::Blocks::sparse, options.keep_going);
   Ipopt::ApplicationReturnStatus ended = application->OptimizeTNLP(program);
   if (program->missed_an_entry()) {
-    program = new ControlProgram(chart, ControlProgram::Blocks::whole);
+    program = new ControlProgram(chart, ControlProgram::Blocks::whole, options.keep_going);
     ended = application->OptimizeTNLP(program);
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace lagroid {
 
@@ -16,8 +17,9 @@ void scale(StageRows& rows, double factor) {
 
 }  // namespace
 
-ControlProgram::ControlProgram(TrajectoryChart& chart, Blocks blocks)
+ControlProgram::ControlProgram(TrajectoryChart& chart, Blocks blocks, std::function<bool()> keep_going)
     : chart_(chart),
+      keep_going_(std::move(keep_going)),
       sizes_(chart.transcription().sizes()),
       before_bounds_(chart.inequalities_before_bounds()),
       at_(sizes_),

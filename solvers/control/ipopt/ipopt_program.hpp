@@ -14,6 +14,7 @@
 
 #include <IpTNLP.hpp>
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,8 @@ class ControlProgram final : public Ipopt::TNLP {
   using Number = Ipopt::Number;
   enum class Blocks { sparse, whole };
 
-  ControlProgram(TrajectoryChart& chart, Blocks blocks);
+  /// `keep_going` is asked in every iteration.
+  ControlProgram(TrajectoryChart& chart, Blocks blocks, std::function<bool()> keep_going = {});
 
   bool missed_an_entry() const { return missed_; }
   const StageRows& costates() const { return costates_; }
@@ -41,6 +43,10 @@ class ControlProgram final : public Ipopt::TNLP {
   bool eval_jac_g(Index, const Number* x, bool is_new, Index, Index, Index* row, Index* column, Number* value) override;
   bool eval_h(Index, const Number* x, bool is_new, Number factor, Index, const Number* multipliers, bool, Index,
               Index* row, Index* column, Number* value) override;
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index, Number, Number, Number, Number, Number, Number, Number,
+                             Number, Index, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    return !keep_going_ || keep_going_();
+  }
   /// Lets the chart stand at the solution.
   void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number* of_lower, const Number* of_upper,
                          Index, const Number*, const Number* multipliers, Number, const Ipopt::IpoptData*,
@@ -83,6 +89,7 @@ class ControlProgram final : public Ipopt::TNLP {
   }
 
   TrajectoryChart& chart_;
+  std::function<bool()> keep_going_;
   TranscriptionSizes sizes_;
   int before_bounds_ = 0;
   std::vector<Index> node_place_;  // of each component of each node

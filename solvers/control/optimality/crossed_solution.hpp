@@ -26,7 +26,7 @@ CrossedSolution solve_and_cross(Transcription& transcription, const ControlOptio
   out.report = solver.solve();
   keep(solver);
   if (!options.crossover || !out.report.converged()) return out;
-  Crossover crossover(transcription);
+  Crossover crossover(transcription, options.keep_going);
   out.crossover = crossover.cross(solver.costates(), solver.inequality_multipliers());
   if (!out.crossover.crossed()) return out;
   keep(crossover);

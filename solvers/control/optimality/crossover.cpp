@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lagroid {
 
@@ -23,8 +24,9 @@ TranscriptionSizes padded(TranscriptionSizes sizes) {
 
 }  // namespace
 
-Crossover::Crossover(Transcription& transcription)
+Crossover::Crossover(Transcription& transcription, std::function<bool()> keep_going)
     : transcription_(transcription),
+      keep_going_(std::move(keep_going)),
       sizes_(transcription.sizes()),
       padded_sizes_(padded(sizes_)),
       kkt_(transcription, padded_sizes_),
@@ -130,6 +132,7 @@ void Crossover::step() {
 Crossover::Outcome Crossover::solve_for_active(CrossoverReport& report) {
   double last = residual_of_active().largest();
   for (int i = 0; i < most_iterations; ++i) {
+    if (keep_going_ && !keep_going_()) return Outcome::interrupted;
     assemble();
     if (!factor()) return Outcome::wrong_inertia;
     step();
@@ -168,6 +171,7 @@ CrossoverStatus Crossover::attempt(double factor, CrossoverReport& report) {
     evaluate();
     const Outcome outcome = solve_for_active(report);
     if (outcome == Outcome::wrong_inertia) return CrossoverStatus::degenerate;
+    if (outcome == Outcome::interrupted) return CrossoverStatus::interrupted;
     if (outcome == Outcome::diverged) return CrossoverStatus::not_improved;
     if (!change_active()) return CrossoverStatus::crossed;
   }

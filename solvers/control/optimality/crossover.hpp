@@ -26,6 +26,7 @@
 #include <lagroid/solvers/control/optimality/kkt_residual.hpp>
 #include <lagroid/solvers/control/stage_kkt.hpp>
 
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,7 @@ enum class CrossoverStatus {
   crossed,       ///< to a solution whose residual is smaller
   degenerate,    ///< the active inequalities are not to be told, or the matrix has not the inertia of a minimum
   not_improved,  ///< the residual did not become smaller: rounding, or too far away
+  interrupted,   ///< `keep_going` said so
 };
 
 constexpr std::string_view to_string(CrossoverStatus status) {
@@ -48,6 +50,8 @@ constexpr std::string_view to_string(CrossoverStatus status) {
       return "degenerate";
     case CrossoverStatus::not_improved:
       return "not_improved";
+    case CrossoverStatus::interrupted:
+      return "interrupted";
   }
   return "";
 }
@@ -66,7 +70,8 @@ struct CrossoverReport {
 
 class Crossover {
  public:
-  explicit Crossover(Transcription& transcription);
+  /// `keep_going` is asked in every iteration.
+  explicit Crossover(Transcription& transcription, std::function<bool()> keep_going = {});
 
   CrossoverReport cross(const StageRows& costates, const StageRows& multipliers);
 
@@ -74,7 +79,7 @@ class Crossover {
   const StageRows& inequality_multipliers() const { return multipliers_; }
 
  private:
-  enum class Outcome { solved, wrong_inertia, diverged };
+  enum class Outcome { solved, wrong_inertia, diverged, interrupted };
 
   CrossoverStatus attempt(double factor, CrossoverReport& report);
   void guess_active(double factor);
@@ -88,6 +93,7 @@ class Crossover {
   char& active(long stage, int i) { return active_[std::size_t(stage * sizes_.inequality + i)]; }
 
   Transcription& transcription_;
+  std::function<bool()> keep_going_;
   TranscriptionSizes sizes_;
   TranscriptionSizes padded_sizes_;  // with a row for each inequality among the equalities
   StageKkt kkt_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace lagroid {
 
@@ -127,6 +128,73 @@ KktResidual kkt_residual(const Transcription& transcription, const StageValues& 
     out.sign = larger(out.sign, -z);
   }
   return out;
+}
+
+void kkt_rounding(const Transcription& transcription, const StageDerivatives& derivatives, const StageRows& costates,
+                  const StageRows& multipliers, KktRounding& out) {
+  const TranscriptionSizes& sizes = transcription.sizes();
+  const int n = sizes.node;
+  const int c = sizes.control;
+  transcription.sizes_of_displaced(out.at);
+  set_all(out.gradient.nodes, 0);
+  set_all(out.gradient.controls, 0);
+  std::fill(out.gradient.durations.begin(), out.gradient.durations.end(), 0.0);
+  long k = 0;
+  for (std::size_t p = 0; p < sizes.phases.size(); ++p)
+    for (; k < sizes.phases[p].end; ++k) {
+      const double* at_nodes = out.at.nodes[k];
+      const double* at_controls = out.at.controls[k];
+      double* nodes = out.gradient.nodes[k];
+      double* controls = out.gradient.controls[k];
+      double& duration = out.gradient.durations[p];
+      // Adds |weight row| to the sizes of the gradient's terms. Returns what a function with that row is known to.
+      const auto take = [&](double weight, const double* row) {
+        const double unit = KktRounding::ulps * std::abs(weight);
+        double sum = 0;
+        const auto add = [&](double slope, double size, double& term) {
+          sum += std::abs(slope) * size;
+          term += unit * std::abs(slope);
+        };
+        for (int q = 0; q < 2 * n; ++q) add(row[q], at_nodes[q], nodes[q]);
+        for (int q = 0; q < c; ++q) add(row[2 * n + q], at_controls[q], controls[q]);
+        add(row[2 * n + c], out.at.durations[p], duration);
+        return KktRounding::ulps * sum;
+      };
+      take(1, derivatives.gradient[k]);
+      for (int i = 0; i < sizes.equalities_of(k); ++i)
+        out.equality[k][i] = take(costates[k][i], derivatives.equality[k] + i * sizes.variables());
+      const int general = sizes.general_inequality();
+      for (int i = 0; i < general; ++i)
+        out.inequality[k][i] = take(multipliers[k][i], derivatives.inequality[k] + i * sizes.variables());
+      for (std::size_t i = 0; i < sizes.phases[p].bounds.size(); ++i) {
+        const ControlBound& bound = sizes.phases[p].bounds[i];
+        const double unit = KktRounding::ulps * std::abs(bound.sign);
+        out.inequality[k][general + int(i)] = unit * at_controls[bound.control];
+        controls[bound.control] += unit * multipliers[k][general + int(i)];
+      }
+    }
+  keep_fixed(transcription, out.gradient);
+}
+
+double largest_violation(const TranscriptionSizes& sizes, const StageValues& values, const KktRounding& rounding) {
+  double most = 0;
+  for (long k = 0; k < sizes.stages; ++k) {
+    for (int i = 0; i < sizes.equalities_of(k); ++i)
+      most = larger(most, above(rounding.equality[k][i], values.equality[k][i]));
+    for (int i = 0; i < sizes.inequality; ++i) most = larger(most, values.inequality[k][i] - rounding.inequality[k][i]);
+  }
+  return most;
+}
+
+double largest_entry(const TrajectoryDisplacement& gradient, const KktRounding& rounding) {
+  double most = 0;
+  const auto take = [&](const std::vector<double>& all, const std::vector<double>& known_to) {
+    for (std::size_t i = 0; i < all.size(); ++i) most = larger(most, above(known_to[i], all[i]));
+  };
+  take(gradient.nodes.numbers(), rounding.gradient.nodes.numbers());
+  take(gradient.controls.numbers(), rounding.gradient.controls.numbers());
+  take(gradient.durations, rounding.gradient.durations);
+  return most;
 }
 
 }  // namespace lagroid

@@ -12,6 +12,9 @@
 
 #include <lagroid/solvers/control/transcription.hpp>
 
+#include <cmath>
+#include <limits>
+
 namespace lagroid {
 
 struct KktResidual {
@@ -38,5 +41,36 @@ double largest_violation(const TranscriptionSizes& sizes, const StageValues& val
 KktResidual kkt_residual(const Transcription& transcription, const StageValues& values,
                          const StageDerivatives& derivatives, const StageRows& costates, const StageRows& multipliers,
                          TrajectoryDisplacement& gradient);
+
+/// What rounding may leave of each part of the residual, ten ulps of the sizes of what is added up in it: a constraint
+/// f(x) is known to eps sum_j |df/dx_j| |x_j|, a component of the gradient to eps times the sizes of its terms.
+struct KktRounding {
+  KktRounding() = default;
+  explicit KktRounding(const TranscriptionSizes& sizes)
+      : equality(sizes.stages, sizes.equality),
+        inequality(sizes.stages, sizes.inequality),
+        gradient(sizes),
+        at(sizes) {}
+  StageRows equality;
+  StageRows inequality;
+  TrajectoryDisplacement gradient;  ///< zero along what is fixed
+  TrajectoryDisplacement at;        ///< |x_j|, of what is displaced
+
+  static constexpr double ulps = 10 * std::numeric_limits<double>::epsilon();
+  /// The largest sum of magnitudes that a component of the gradient is made of.
+  double largest_term() const { return largest_entry(gradient) / ulps; }
+};
+
+void kkt_rounding(const Transcription& transcription, const StageDerivatives& derivatives, const StageRows& costates,
+                  const StageRows& multipliers, KktRounding& out);
+
+/// What of |x| is more than rounding leaves; no number where x is none.
+inline double above(double rounding, double x) { return std::abs(x) <= rounding ? 0 : std::abs(x) - rounding; }
+
+/// The largest of |phi| and of gamma's positive part, of what is more than rounding leaves.
+double largest_violation(const TranscriptionSizes& sizes, const StageValues& values, const KktRounding& rounding);
+
+/// The same of the gradient's components.
+double largest_entry(const TrajectoryDisplacement& gradient, const KktRounding& rounding);
 
 }  // namespace lagroid

@@ -18,6 +18,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 #include <tuple>
 
@@ -29,9 +30,10 @@ struct SatelliteTurn : ControlledFlow<SatelliteTurn, Product<Action<SO3, Rotated
   double cone = 0;                     ///< rad
   ControlCost cost_of = ControlCost::effort;
   static auto parameters() {
+    constexpr NumberRule an_angle{"from 0 to pi", [](double x) { return x >= 0 && x <= std::numbers::pi; }};
     return std::tuple(parameter("inertia", &SatelliteTurn::inertia, "kg m^2", "principal moments", positive),
                       direction("avoided", &SatelliteTurn::avoided, "the direction that the third axis keeps off"),
-                      parameter("cone", &SatelliteTurn::cone, "rad", "how far, at least; 0: anywhere", nonnegative),
+                      parameter("cone", &SatelliteTurn::cone, "rad", "how far, at least; 0: anywhere", an_angle),
                       choice("cost", &SatelliteTurn::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array flow_reads{false, true};  // not the direction

@@ -28,8 +28,10 @@ Eigen::MatrixXd ControlledScene::end_jacobian(const ControlledNode& node) {
 }
 
 /// Newton's method from where `end_` is, on the first conditions, by the shortest steps of the first numbers of a node.
+/// Steps are short, for joints bend; where an end is still far off after many of them it is the way that is long, and
+/// they lengthen.
 double ControlledScene::approach_end(int conditions, int numbers) {
-  constexpr int most = 200;
+  constexpr int most = 200, short_steps = 100;
   if (conditions == 0) return 0;
   std::vector<double> values;
   Eigen::VectorXd by = Eigen::VectorXd::Zero(2 * n());
@@ -39,7 +41,8 @@ double ControlledScene::approach_end(int conditions, int numbers) {
     const double off = left.lpNorm<Eigen::Infinity>();
     if (off < 1e-13 || k == most || !std::isfinite(off)) return off;
     by.head(numbers) = -least_squares(end_jacobian(end_).topLeftCorner(conditions, numbers), left);
-    displace(end_, by.data(), std::min(1.0, 1 / by.head(n()).norm()), end_);
+    const double longest = std::exp2(std::max(0, k - short_steps));
+    displace(end_, by.data(), std::min(1.0, longest / by.head(n()).norm()), end_);
   }
 }
 

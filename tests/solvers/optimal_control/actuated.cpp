@@ -74,6 +74,28 @@ TEST(ActuatedSystems, TurnABodyAtTheKnownCost) {
   EXPECT_NEAR(found.minima.front().report.cost, 2.227141563828326, 5 * 5.6 / 1600);
 }
 
+// A body of tons takes torques a thousand times those of one of kilograms, and a million times the cost.
+TEST(ActuatedSystems, SolutionsDoNotDependOnUnitsOfMass) {
+  ControlTask<Pushed<RigidBody, 3>> body;
+  body.boundary = {SO3::exp(Vector<double, 3>(2 * Vector<double, 3>(1, 2, 3).normalized())),
+                   {Vector<double, 3>::Zero(), Vector<double, 3>::Zero()}};
+  body.duration = 5;
+  auto pendulum = swing_up();
+  const auto cost_in = [](auto& task, double bound) {
+    task.lower.setConstant(-bound);
+    task.upper.setConstant(bound);
+    const auto found = search_control(task, 100, {.starts = 3});
+    EXPECT_FALSE(found.minima.empty()) << bound << ": " << found.best_failure.report.message;
+    return found.minima.empty() ? 0 : found.minima.front().report.cost;
+  };
+  const double turn = cost_in(body, 0.5);
+  const double swing = cost_in(pendulum, 0.5);
+  body.system.system.inertia *= 1000;
+  pendulum.system.system.bob_mass *= 1000;
+  EXPECT_NEAR(cost_in(body, 500), 1e6 * turn, 1e-9 * 1e6 * turn);
+  EXPECT_NEAR(cost_in(pendulum, 500), 1e6 * swing, 1e-9 * 1e6 * swing);
+}
+
 TEST(ActuatedSystems, StartsThatTakeLongAreGivenUp) {
   ControlTask<Pushed<RigidBody, 3>> task;
   task.boundary = {SO3::exp(Vector<double, 3>(2 * Vector<double, 3>(1, 2, 3).normalized())),

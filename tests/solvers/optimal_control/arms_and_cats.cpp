@@ -77,6 +77,21 @@ TEST(FallingCats, TurnWithoutAngularMomentum) {
   EXPECT_NEAR(std::log2((costs[0] - costs[1]) / (costs[1] - costs[2])), 2, 0.5);
 }
 
+TEST(FallingCats, NoStepHidesAHalfTurn) {
+  const BendingCat cat;
+  const auto broken = [&](double turn, double bend) {
+    ArrowOf<BendingCat::GroupoidType> g;
+    std::get<0>(std::get<0>(g)) = Eigen::AngleAxisd(turn, Eigen::Vector3d(1, 2, 2) / 3).toRotationMatrix();
+    std::get<1>(std::get<0>(g)) = {Vector<double, 2>(0.1, 0.2), Vector<double, 2>(0.1 + bend, 0.2)};
+    return cat.inequality(g, Vector<double, 2>(0, 0), 0.01).maxCoeff() > 0;
+  };
+  EXPECT_FALSE(broken(1.5, 0));
+  EXPECT_TRUE(broken(1.6, 0));
+  EXPECT_TRUE(broken(std::numbers::pi, 0));
+  EXPECT_FALSE(broken(0.1, 1.3));
+  EXPECT_TRUE(broken(0.1, 2 * std::numbers::pi));  // the same bend
+}
+
 // Energies by hand: arms along a line, both joints turning.
 TEST(TwoLinkArms, HaveTheEnergyOfTheirLinks) {
   TwoLinkArm arm;

@@ -62,6 +62,19 @@ TEST(PlanarMasses, KeepOutOfADisk) {
   expect_second_order("arc", task, 3.151350129280076, 8.7, false, 4);
 }
 
+// The disk's inequality at an end that is fixed can have any multiplier, and is no measure of the others.
+TEST(PlanarMasses, AnEndOnTheRimLeavesNoResidual) {
+  auto task = task_on<PlanarMass>({-2, -0.3, 0, 0}, {1, 0, 0, 0}, 4);
+  task.system.disk_radius = 1;
+  const auto found = search_control(task, 100, {.starts = 10});
+  ASSERT_EQ(found.minima.size(), 2U) << "above the disk, and below";
+  for (const auto& each : found.minima) {
+    EXPECT_LT(each.report.stationarity, 1e-9) << each.report.cost;
+    EXPECT_LT(each.report.violation, 1e-12);
+    EXPECT_LT(each.report.complementarity, 1e-9);
+  }
+}
+
 TEST(SwingUps, BothWithAndWithoutABoundOfTheTorque) {
   auto task = task_on<SwingUp>({0, 0}, {std::numbers::pi, 0}, 10);
   expect_second_order("free", task, 1.1611196661425072, 28.6, true);

@@ -69,6 +69,16 @@ TEST(ControlLoops, ASampleTakesAFewIterations) {
   EXPECT_LT(left.norm(), 0.1);
 }
 
+TEST(ControlLoops, AControlIsWithinItsBoundsWhereNoPlanIs) {
+  ControlLoop<SatelliteTurn> loop(turn(), 30);
+  ASSERT_TRUE(loop.begin().converged());
+  Vector<double, 6> off;
+  off << 0, 0, 0, 100, 0, 0;
+  EXPECT_FALSE(loop.advance(loop.followed(off)).converged());
+  EXPECT_GT(loop.plan().controls.front().cwiseAbs().maxCoeff(), 0.6);
+  EXPECT_LE(loop.control().cwiseAbs().maxCoeff(), 0.6);
+}
+
 // The plan of a sample is what a solve from nothing finds.
 TEST(ControlLoops, PlansAreThoseOfSolvesFromNothing) {
   ControlTask<SatelliteTurn> task = turn();

@@ -118,6 +118,64 @@ TEST(ControlSolvers, AnInfeasibleProblemIsTypedAndNamesWhatIsViolated) {
   EXPECT_TRUE(solve_control(task, 50).report.converged());
 }
 
+// Rounding of places of 1e7 violates constraints by 1e-9 and more: what is infeasible is so by more than that.
+TEST(ControlSolvers, WhatIsInfeasibleDoesNotDependOnUnits) {
+  for (const double distance : {1e7, 1e10}) {
+    ControlTask<DoubleIntegrator> task{{}, {{0, 0}, {distance, 0}}, 3};
+    task.system.cost_of = ControlCost::time;
+    task.duration_is_free = true;
+    task.lower(0) = -1;
+    task.upper(0) = 1;
+    const auto found = solve_control(task, 100);
+    ASSERT_TRUE(found.report.converged()) << distance << ": " << found.report.message;
+    const double exact = 2 * std::sqrt(distance);
+    EXPECT_NEAR(found.report.cost, exact, 1e-9 * exact);
+    task.duration_is_free = false;
+    task.duration = 0.9 * exact;
+    const auto hurried = solve_control(task, 100);
+    EXPECT_EQ(hurried.report.status, ControlStatus::infeasible) << distance;
+    EXPECT_GT(hurried.report.violation, 1);
+  }
+}
+
+TEST(ControlSolvers, EndWhereTheyAreInterrupted) {
+  auto task = rest_to_rest();
+  int asked = 0;
+  const auto after = [&](int times) { return [&asked, times] { return ++asked < times; }; };
+  const auto early = solve_control(task, 50, {.keep_going = after(1)});
+  EXPECT_EQ(early.report.status, ControlStatus::interrupted);
+  EXPECT_EQ(early.report.iterations, 0);
+  EXPECT_FALSE(early.report.message.empty());
+  asked = 0;
+  task.lower(0) = -3;  // too little: after a few iterations violations alone are lowered
+  task.upper(0) = 3;
+  const auto restoring = solve_control(task, 50, {.keep_going = after(12)});
+  EXPECT_EQ(restoring.report.status, ControlStatus::interrupted);
+  EXPECT_GT(restoring.report.restorations, 0);
+  EXPECT_LE(restoring.report.iterations, 12);
+  asked = 0;
+  task = rest_to_rest();
+  task.system.largest_speed = 1.25;
+  const auto search = search_control(task, 50, {.starts = 5}, [&](int start) { return start == 0 || ++asked < 4; });
+  EXPECT_EQ(search.outcomes.at(ControlStatus::converged), 1);
+  EXPECT_EQ(search.outcomes.at(ControlStatus::interrupted), 1);
+  EXPECT_EQ(search.outcomes.size(), 2U);
+  EXPECT_EQ(search.minima.size(), 1U);
+}
+
+// What converged stands, though its active inequalities are not looked for to the end.
+TEST(ControlSolvers, AnInterruptedCrossoverLeavesTheInteriorPoint) {
+  auto task = rest_to_rest();
+  task.system.largest_speed = 1.25;
+  const auto whole = solve_control(task, 50);
+  ASSERT_TRUE(whole.crossover.crossed());
+  int asked = 0;
+  const auto found = solve_control(task, 50, {.keep_going = [&] { return ++asked <= whole.report.iterations; }});
+  EXPECT_TRUE(found.report.converged());
+  EXPECT_EQ(found.crossover.status, CrossoverStatus::interrupted);
+  EXPECT_NEAR(found.report.cost, whole.report.cost, 1e-8);
+}
+
 TEST(ControlSolvers, AStartThatIsNotFiniteIsTyped) {
   auto start = straight_trajectory(rest_to_rest(), 10);
   start.controls[3](0) = NAN;

@@ -15,6 +15,16 @@ namespace {
 using ipopt_tests::expect_agreement;
 using ipopt_tests::task_on;
 
+TEST(ControlByIpopt, EndsWhereItIsInterrupted) {
+  const auto task = task_on<SwingUp>({0, 0}, {std::numbers::pi, 0}, 10);
+  int asked = 0;
+  const auto found =
+      solve_control_by_ipopt(task, straight_trajectory(task, 50), {.keep_going = [&] { return ++asked < 4; }});
+  EXPECT_EQ(found.report.status, ControlStatus::interrupted);
+  EXPECT_LT(found.report.iterations, 4);
+  EXPECT_FALSE(found.report.message.empty());
+}
+
 TEST(ControlByIpopt, AgreesOnLinesAndPlanes) {
   for (const auto& [start, end] : {std::pair(Vector<double, 2>(0, 0), Vector<double, 2>(1, 0)),
                                    std::pair(Vector<double, 2>(-1, 1), Vector<double, 2>(2, -0.5)),

@@ -150,6 +150,26 @@ TEST(ControlledBodies, AlongAMagneticFieldTheCentreOfMassIsHeld) {
   EXPECT_THROW(ControlledScene{task}, std::invalid_argument);
 }
 
+/// A mass in space that a force pushes along the first axis.
+struct PushedMass {
+  template <class S> BasicScene<S> operator()() const {
+    BasicScene<S> scene;
+    const Body mass = scene.point_mass(S(1), vec<S>(0, 0, 0), vec<S>(0, 0, 0));
+    scene.begin_switch("push");
+    scene.add(BasicConstantForce<S>{{mass.centre}, vec<S>(1, 0, 0)});
+    scene.end_switch();
+    return scene;
+  }
+};
+TEST(ControlledBodies, AnEndIsFoundAtAnyDistance) {
+  SceneControl task = control_of_scene(PushedMass{});
+  task.actuators = {{"push"}};
+  for (const double distance : {1.0, 1e3, 1e6, 1e9}) {
+    task.end.places = {{{0}, 0, distance}};
+    EXPECT_NO_THROW(ControlledScene{task}) << distance;
+  }
+}
+
 TEST(ControlledBodies, EndsBeyondTheirLimitsAreRefused) {
   SceneControl task = control_of_scene(Cat{});
   task.actuators = {{"pitch"}, {"roll"}, {"twist"}};

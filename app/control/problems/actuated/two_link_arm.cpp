@@ -7,7 +7,8 @@ namespace lagroid::app {
 
 const ControlProblem& two_link_arm_problem() {
   static const ControlProblemOf<PushedArm> problem("two_link_arm",
-                                                   "an arm of two links that keeps out of a disk, by discrete steps");
+                                                   "an arm of two links that keeps out of a disk, by discrete steps",
+                                                   {"disk_radius", "disk_radius", "disk_radius", "disk_radius"});
   return problem;
 }
 

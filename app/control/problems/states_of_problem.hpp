@@ -1,0 +1,70 @@
+#pragma once
+/// What a control problem says of one state by itself: which inequality does not hold there, and whether the motion can
+/// wait there at no cost.
+///
+///     if (const auto i = broken_at(system, node)) refuse(limits[*i]);
+///     if (phase.duration_is_free && can_wait(phase, node)) refuse("no duration is the best");
+///
+/// Nothing throws.
+
+#include <lagroid/solvers/control/control_system.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <random>
+
+namespace lagroid::app {
+
+template <class Sys> using NodeOf = ObjectOf<typename Sys::GroupoidType>;
+
+/// The first inequality that does not hold at a node, whatever leads there. One that is the same number along arrows,
+/// controls and steps drawn at random is of the node alone; of the others nothing is said.
+template <class Sys> std::optional<std::size_t> broken_at(const Sys& system, const NodeOf<Sys>& node) {
+  if constexpr (Sys::inequalities > 0) {
+    constexpr int draws = 3;
+    constexpr double rounding = 1e-9;
+    std::mt19937_64 generator(1);
+    std::normal_distribution<double> normal(0, 0.3);
+    Vector<double, Sys::inequalities> first;
+    std::array<bool, std::size_t(Sys::inequalities)> is_of_node;
+    is_of_node.fill(true);
+    for (int k = 0; k < draws; ++k) {
+      AlgebroidVector<typename Sys::GroupoidType> back;
+      Vector<double, Sys::controls> u;
+      for (double& x : back) x = normal(generator);
+      for (double& x : u) x = normal(generator);
+      const auto arrow = system.groupoid.inverse(system.groupoid.tau(node, back));
+      const Vector<double, Sys::inequalities> gamma = system.inequality(arrow, u, std::exp(normal(generator)));
+      if (k == 0) first = gamma;
+      for (int i = 0; i < Sys::inequalities; ++i)
+        if (!(std::abs(gamma(i) - first(i)) <= rounding * (1 + std::abs(first(i))))) is_of_node[std::size_t(i)] = false;
+    }
+    for (int i = 0; i < Sys::inequalities; ++i)
+      if (is_of_node[std::size_t(i)] && first(i) > rounding) return std::size_t(i);
+  }
+  return std::nullopt;
+}
+
+/// Whether to rest there, with controls as near to zero as their bounds allow, is a motion of no cost: then any motion
+/// that comes by can take as much longer, and costs no more.
+template <class Sys> bool can_wait(const ControlPhase<Sys>& phase, const NodeOf<Sys>& node) {
+  constexpr double rounding = 1e-12;
+  const Sys& system = phase.system;
+  const auto rest = system.groupoid.unit(node);
+  const double h = phase.duration / double(phase.stages);
+  Vector<double, Sys::controls> u;
+  for (int i = 0; i < Sys::controls; ++i) u(i) = std::clamp(0.0, phase.lower(i), phase.upper(i));
+  if (!(system.cost(rest, u, h) <= 0)) return false;
+  for (const double left : system.constraint(rest, u, h))
+    if (!(std::abs(left) <= rounding)) return false;
+  if constexpr (Sys::inequalities > 0)
+    if (phase.inequalities_hold)
+      for (const double gamma : system.inequality(rest, u, h))
+        if (!(gamma <= 0)) return false;
+  return true;
+}
+
+}  // namespace lagroid::app
