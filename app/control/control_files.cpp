@@ -79,30 +79,89 @@ std::string phase_bounds(const ControlResult& found) {
   return out;
 }
 
-/// States above, controls below, with their bounds as lines.
+/// Shades the stages for which `is_marked(k)`.
+template <class Mark> std::string bands(const ControlResult& found, const Mark& is_marked) {
+  std::string out;
+  const std::size_t stages = found.control_rows.size();
+  for (std::size_t k = 0, next = 0; k < stages; k = next + 1) {
+    for (next = k; next < stages && is_marked(next); ++next) continue;
+    if (next > k)
+      out += fmt::format(
+          "set object rectangle from {:.17g}, graph 0 to {:.17g}, graph 1 behind fillcolor rgb '#f6ead0' "
+          "fillstyle solid noborder\n",
+          found.times[k], found.times[next]);
+  }
+  return out;
+}
+
+/// Where a multiplier of an inequality acts, bounds of controls among them: to a millionth of the largest.
+std::string bands_of_states(const ControlResult& found) {
+  double largest = 0;
+  for (const auto& row : found.inequality_rows)
+    for (const double z : row) largest = std::max(largest, z);
+  return bands(found, [&](std::size_t k) {
+    return k < found.inequality_rows.size() &&
+           std::any_of(found.inequality_rows[k].begin(), found.inequality_rows[k].end(),
+                       [&](double z) { return z > 1e-6 * largest; });
+  });
+}
+
+/// Where a control is at a bound, to a millionth of its size.
+std::string bands_of_controls(const ControlResult& found) {
+  std::vector<const PhaseResult*> phase_of;
+  for (const PhaseResult& each : found.phases) phase_of.insert(phase_of.end(), std::size_t(each.stages), &each);
+  return bands(found, [&](std::size_t k) {
+    const auto& lower = k < phase_of.size() ? phase_of[k]->lower : found.lower;
+    const auto& upper = k < phase_of.size() ? phase_of[k]->upper : found.upper;
+    const auto is_at = [](double bound, double u) {
+      return std::isfinite(bound) && std::abs(u - bound) <= 1e-6 * std::abs(bound);
+    };
+    for (std::size_t i = 0; i < found.controls.size(); ++i)
+      if (is_at(lower[i], found.control_rows[k][i]) || is_at(upper[i], found.control_rows[k][i])) return true;
+    return false;
+  });
+}
+
+/// States above, controls below: their bounds are lines, and bands are where inequalities act.
 std::string gnuplot_script(const ControlResult& found) {
-  std::string out =
+  std::string out = fmt::format(
       "# Draws trajectory.csv; run by lagroid, or by hand: gnuplot plot.gp\n"
-      "set datafile separator ','\nset grid\nset key outside right\nset xlabel 'time'\n";
+      "set datafile separator ','\nset grid\nset key outside right\nset xlabel 'time'\n"
+      "set lmargin 10\nset rmargin 18\nset offsets 0, 0, graph 0.06, graph 0.06\n{}",
+      found.control_rows.empty()
+          ? ""
+          : fmt::format("set xrange [{:.17g}:{:.17g}]\n", found.times.front(), found.times.back()));
   std::string states;
   for (const auto& name : found.states)
     states += fmt::format("{}'trajectory.csv' using 'time':'{}' with lines linewidth 1.5 title '{}'",
                           states.empty() ? "" : ", ", name, name);
   std::string controls;
+  std::string last;  // the value of a stage holds to its end, which is no row of its own
+  bool are_bounded = false;
   for (std::size_t i = 0; i < found.controls.size(); ++i) {
-    controls += fmt::format("{}'trajectory.csv' using 'time':'{}' with steps linewidth 1.5 title '{}'",
-                            controls.empty() ? "" : ", ", found.controls[i], found.controls[i]);
+    controls += fmt::format("{}'trajectory.csv' using 'time':'{}' with steps linetype {} linewidth 1.5 title '{}'",
+                            controls.empty() ? "" : ", ", found.controls[i], i + 1, found.controls[i]);
+    if (!found.control_rows.empty())
+      last += fmt::format("set arrow from {:.17g}, {:.17g} to {:.17g}, {:.17g} nohead linetype {} linewidth 1.5\n",
+                          found.times[found.times.size() - 2], found.control_rows.back()[i], found.times.back(),
+                          found.control_rows.back()[i], i + 1);
     for (const double bound : {found.lower[i], found.upper[i]})
-      if (std::isfinite(bound) && found.phases.empty())
-        controls += fmt::format(", {:.17g} with lines dashtype 2 linecolor 'gray' notitle", bound);
+      if (std::isfinite(bound)) {
+        are_bounded = true;
+        if (found.phases.empty())
+          controls += fmt::format(", {:.17g} with lines dashtype 2 linecolor 'gray' notitle", bound);
+      }
   }
+  const std::string state_bands = bands_of_states(found);
   for (const auto& [file, terminal] : {std::pair("plot.svg", "svg size 900,700 background 'white' noenhanced"),
                                        std::pair("plot.png", "pngcairo size 900,700 noenhanced")})
     out += fmt::format(
-        "\nset terminal {}\nset output '{}'\n{}set multiplot layout 2,1\nset title 'state'\nplot {}\n"
-        "set title 'controls, and their bounds'\n{}plot {}\nunset multiplot\nset output\n{}",
-        terminal, file, phase_borders(found), states, phase_bounds(found), controls,
-        found.phases.empty() ? "" : "unset arrow\nunset label\n");
+        "\nset terminal {}\nset output '{}'\n{}set multiplot layout 2,1\n{}set title 'state{}'\nplot {}\n"
+        "unset object\n{}set title 'controls{}'\n{}{}plot {}\nunset multiplot\nset output\nunset object\n"
+        "unset arrow\nunset label\n",
+        terminal, file, phase_borders(found), state_bands, state_bands.empty() ? "" : "; bands: an inequality acts",
+        states, bands_of_controls(found), are_bounded ? ", and their bounds; bands: one is reached" : "",
+        phase_bounds(found), last, controls);
   return out;
 }
 

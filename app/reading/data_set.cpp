@@ -29,15 +29,28 @@ std::string text_attribute(const H5::H5Object& object, const std::string& name) 
   return text;
 }
 
-/// Joined by ", " in attributes, or from the name and the number of columns.
-std::vector<std::string> columns_of(const H5::DataSet& set, const std::string& name, std::size_t rows) {
-  std::vector<std::string> out;
-  if (!set.attrExists(components_attribute(0))) {
-    const std::size_t count = rows == 0 ? 0 : std::size_t(set.getSpace().getSimpleExtentNpoints()) / rows;
-    if (set.getSpace().getSimpleExtentNdims() == 1) return {name};
-    for (std::size_t i = 0; i < count; ++i) out.push_back(fmt::format("{}.{}", name, i));
-    return out;
+/// Files of runs say so. (To ask whether there is an attribute crashes HDF5 where the file is damaged.)
+bool is_of_a_run(const H5::H5File& file) {
+  try {
+    text_attribute(file, "generator");
+    return true;
+  } catch (const H5::AttributeIException&) {
+    return false;
   }
+}
+
+/// From the name and the number of columns.
+std::vector<std::string> numbered_columns(const H5::DataSet& set, const std::string& name, std::size_t rows) {
+  if (set.getSpace().getSimpleExtentNdims() == 1) return {name};
+  std::vector<std::string> out;
+  const std::size_t count = rows == 0 ? 0 : std::size_t(set.getSpace().getSimpleExtentNpoints()) / rows;
+  for (std::size_t i = 0; i < count; ++i) out.push_back(fmt::format("{}.{}", name, i));
+  return out;
+}
+
+/// Those of a run, joined by ", " in attributes.
+std::vector<std::string> columns_of_run(const H5::DataSet& set) {
+  std::vector<std::string> out;
   for (std::size_t part = 0; part == 0 || set.attrExists(components_attribute(part)); ++part) {
     const std::string joined = text_attribute(set, components_attribute(part));
     for (std::size_t from = 0; from <= joined.size();) {
@@ -92,6 +105,7 @@ void read_series(const std::filesystem::path& path,
   const std::string file = path.string();
   try {
     const H5::H5File in(file, H5F_ACC_RDONLY);
+    const bool of_a_run = is_of_a_run(in);
     const std::string time_name = !in.nameExists("time") && in.nameExists("t") ? "t" : "time";
     if (!in.nameExists(time_name))
       throw DataError(fmt::format("{}: no data set time, or t; it has those of rows", file));
@@ -102,9 +116,9 @@ void read_series(const std::filesystem::path& path,
       const H5::DataSet set = in.openDataSet(name);
       if (!holds_numbers(set)) continue;
       RecordedSeries series;
-      series.first = set.attrExists("rows") && text_attribute(set, "rows") == "one per recorded arrow" ? 1 : 0;
+      series.first = of_a_run && text_attribute(set, "rows") == "one per recorded arrow" ? 1 : 0;
       const std::size_t rows = time.size() - std::min(series.first, time.size());
-      series.columns = columns_of(set, name, rows);
+      series.columns = of_a_run ? columns_of_run(set) : numbered_columns(set, name, rows);
       series.values = numbers(set);
       if (series.values.size() != rows * series.columns.size())
         throw DataError(fmt::format("{}: \"{}\" has another number of rows than {}", file, name, time_name));

@@ -205,6 +205,22 @@ TEST_F(Control, AGateIsPassedWhereTheWayIsShortest) {
   EXPECT_NEAR(nlohmann::json::parse(by_ipopt.out).at("cost").get<double>(), found.at("cost").get<double>(), 1e-8);
 }
 
+TEST_F(Control, BandsAreWhereBoundsAreReached) {
+  const auto drawn = [&](const std::string& name, const std::string& more = "") {
+    const fs::path out = folder_ / name;
+    const Outcome r = run(scene(name) + more + " --out " + out.string());
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_TRUE(fs::exists(out / "plot.svg"));
+    std::ifstream plot(out / "plot.gp");
+    return std::string{std::istreambuf_iterator<char>(plot), {}};
+  };
+  const std::string bounded = drawn("fastest_stop");
+  EXPECT_NE(bounded.find("set object rectangle from 0, graph 0"), std::string::npos) << bounded;
+  EXPECT_NE(bounded.find("set title 'controls, and their bounds; bands: one is reached'"), std::string::npos);
+  const std::string free = drawn("rolled_ball", " --set parameters.largest_speed=20");
+  EXPECT_EQ(free.find("set object rectangle"), std::string::npos) << free;
+}
+
 TEST_F(Control, NamesOfPhasesAreTextToGnuplot) {
   const fs::path out = folder_ / "named";
   const Outcome r = run(scene("through_a_gate") + " --set \"phase.0.name=\\\"driver's way\\\"\" --out " + out.string());

@@ -64,6 +64,7 @@ TEST_F(SeriesOfAFile, OfOnesOwnAreNamedByTheirDataSets) {
 
 TEST_F(SeriesOfAFile, OfARunBeginWithTheirFirstArrow) {
   write_hdf5(file_, [](const H5::H5File& out) {
+    set_attribute(out, "generator", "lagroid");
     add_dataset(out, "time", {0, 0.5, 1}, 1);
     const H5::DataSet set = add_dataset(out, "multipliers", {8, 9}, 1);
     set_attribute(set, "components", "lambda");
