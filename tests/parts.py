@@ -179,22 +179,31 @@ class Parts(unittest.TestCase):
             self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stdout + told.stderr)
             self.assertIn(why, told.stderr)
 
+    def checked(self, scene, of):
+        """The table of a pendulum's gradients, which differences bear out."""
+        told = run(of_part("pendulum"), *scene, "--of", of, "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertGreater(found["digits_agreed"], 7)
+        return found
+
+    def ran(self, scene, out):
+        """The rows of the run of that scene."""
+        done = run(of_part("pendulum"), "run", *scene[1:], "--out", out, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return rows_of(out / "trajectory.csv")
+
     def test_gradients_go_through_events(self):
         kicked = ('event=[{name = "wall", when = "sin(q) - 0.3*cos(2*pi*t)", direction = "falling", kick = ["-0.4*p + 0.1*q^2"]},'
                   '{name = "turn", when = "p", direction = "rising"}]')
         scene = ("gradient", examples / "pendulum.toml", "--set", "time.steps=150", "--set", kicked)
-        told = run(of_part("pendulum"), *scene, "--of", "final,events,event.wall.1,node.149.p", "--check", "--json")
-        self.assertEqual(told.returncode, 0, told.stderr)
-        found = json.loads(told.stdout)
-        self.assertGreater(found["digits_agreed"], 7)
+        found = self.checked(scene, "final,events,event.wall.1,node.149.p")
         self.assertIn("event.turn.1.t", found["of"])
         self.assertEqual(found["of"].count("event.wall.1.t"), 1)
         # The run itself says the same of where and when.
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out"
-            done = run(of_part("pendulum"), "run", *scene[1:], "--out", out, "--json")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            rows = rows_of(out / "trajectory.csv")
+            rows = self.ran(scene, out)
             value = dict(zip(found["of"], found["values"]))
             self.assertAlmostEqual(value["final.q"], float(rows[-1]["q"]), delta=1e-12)
             self.assertAlmostEqual(value["node.149.p"], float(rows[-2]["p"]), delta=1e-12)
@@ -204,17 +213,12 @@ class Parts(unittest.TestCase):
         changed = ('event=[{name = "moon", when = "q - 0.1", direction = "falling", set = ["gravity = 3 + 0.5*p^2 + 0.2*t", "mass = 1.2"], '
                    'kick = ["0.1*q - 0.05*p"]}]')
         scene = ("gradient", examples / "pendulum.toml", "--set", "time.steps=150", "--set", changed)
-        told = run(of_part("pendulum"), *scene, "--of", "final,events,node.140.p", "--check", "--json")
-        self.assertEqual(told.returncode, 0, told.stderr)
-        found = json.loads(told.stdout)
-        self.assertGreater(found["digits_agreed"], 7)
+        found = self.checked(scene, "final,events,node.140.p")
         self.assertGreater(len([name for name in found["of"] if name.startswith("event.moon")]), 1)
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out"
-            done = run(of_part("pendulum"), "run", *scene[1:], "--out", out, "--json")
-            self.assertEqual(done.returncode, 0, done.stderr)
             value = dict(zip(found["of"], found["values"]))
-            self.assertAlmostEqual(value["final.q"], float(rows_of(out / "trajectory.csv")[-1]["q"]), delta=1e-12)
+            self.assertAlmostEqual(value["final.q"], float(self.ran(scene, out)[-1]["q"]), delta=1e-12)
         told = run(of_part("pendulum"), *scene[:4], "--set", changed.replace("1.2", "q - 1"), "--of", "final")
         self.assertEqual((told.returncode, len(told.stderr.splitlines())), (3, 1), told.stderr)
         self.assertIn("mass becomes -0.9, and is to be positive", told.stderr)

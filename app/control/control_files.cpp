@@ -23,6 +23,13 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 6> files{"trajectory.csv", "summary.json", "summary.txt",
                                            "plot.gp",        "plot.svg",     "plot.png"};
 
+/// Which phase each stage is of; empty where the scene has no list of them.
+std::vector<std::size_t> phase_of_stages(const ControlResult& found) {
+  std::vector<std::size_t> out;
+  for (std::size_t p = 0; p < found.phases.size(); ++p) out.insert(out.end(), std::size_t(found.phases[p].stages), p);
+  return out;
+}
+
 /// A row for each node; controls, costates and phase are those of the arrow that begins there, and none at the last.
 std::string trajectory_csv(const ControlResult& found) {
   std::string out = "time";
@@ -32,9 +39,7 @@ std::string trajectory_csv(const ControlResult& found) {
   for (std::size_t i = 0; i < costates; ++i) out += fmt::format(",costate_{}", i + 1);
   if (!found.phases.empty()) out += ",phase";
   out += "\n";
-  std::vector<std::size_t> phase_of;
-  for (std::size_t p = 0; p < found.phases.size(); ++p)
-    phase_of.insert(phase_of.end(), std::size_t(found.phases[p].stages), p + 1);
+  const std::vector<std::size_t> phase_of = phase_of_stages(found);
   for (std::size_t k = 0; k < found.times.size(); ++k) {
     fmt::format_to(std::back_inserter(out), "{:.17g}", found.times[k]);
     for (const double x : found.state_rows[k]) fmt::format_to(std::back_inserter(out), ",{:.17g}", x);
@@ -43,7 +48,7 @@ std::string trajectory_csv(const ControlResult& found) {
       out += has_arrow ? fmt::format(",{:.17g}", found.control_rows[k][i]) : ",";
     for (std::size_t i = 0; i < costates; ++i)
       out += has_arrow ? fmt::format(",{:.17g}", found.costate_rows[k][i]) : ",";
-    if (!found.phases.empty()) out += has_arrow ? fmt::format(",{}", phase_of[k]) : ",";
+    if (!found.phases.empty()) out += has_arrow ? fmt::format(",{}", phase_of[k] + 1) : ",";
     out += "\n";
   }
   return out;
@@ -108,11 +113,10 @@ std::string bands_of_states(const ControlResult& found) {
 
 /// Where a control is at a bound, to a millionth of its size.
 std::string bands_of_controls(const ControlResult& found) {
-  std::vector<const PhaseResult*> phase_of;
-  for (const PhaseResult& each : found.phases) phase_of.insert(phase_of.end(), std::size_t(each.stages), &each);
+  const std::vector<std::size_t> phase_of = phase_of_stages(found);
   return bands(found, [&](std::size_t k) {
-    const auto& lower = k < phase_of.size() ? phase_of[k]->lower : found.lower;
-    const auto& upper = k < phase_of.size() ? phase_of[k]->upper : found.upper;
+    const auto& lower = phase_of.empty() ? found.lower : found.phases[phase_of[k]].lower;
+    const auto& upper = phase_of.empty() ? found.upper : found.phases[phase_of[k]].upper;
     const auto is_at = [](double bound, double u) {
       return std::isfinite(bound) && std::abs(u - bound) <= 1e-6 * std::abs(bound);
     };

@@ -40,8 +40,8 @@ struct RecordedSeries {
 };
 
 /// The series of a file as trajectory.h5 of a run: a data set `time` (or `t`), and others of as many rows, each of
-/// which `use(times, series)` gets in turn. Columns have the names that the attribute `components` says; where there is
-/// none, that of the data set, or x.0, x.1, ... of a data set x with several. Throws DataError.
+/// which `use(times, series)` gets in turn. Columns have the names that the run gave them; where the file is none of a
+/// run, that of the data set, or x.0, x.1, ... of a data set x with several. Throws DataError.
 void read_series(const std::filesystem::path& file,
                  const std::function<void(const std::vector<double>&, const RecordedSeries&)>& use);
 
