@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Everything there is to run of a version: `./lagroid release [--list] [--again PIECE] [PIECE...]`.
 
-What ran on which commit is kept in build/release_journal.json after each piece, so that work that was cut goes on with the next
-one. What a piece prints is in build/release_logs. It ends by writing docs/verified.md.
+How each piece went when it last ran, and on which commit, is kept in docs/verified.json after each piece: work that was cut goes
+on with the next one, on another machine too once that file is committed. What a piece prints is in build/release_logs. It ends by
+writing docs/verified.md.
 """
 import argparse
 import datetime
@@ -19,12 +20,14 @@ import pieces as declared
 
 hour = 3600  # seconds that a piece may take
 page_of_it = "docs/verified.md"
+journal_of_it = "docs/verified.json"
+but_for_these = ("--", ".", f":!{page_of_it}", f":!{journal_of_it}")
 
 
 class Release:
     def __init__(self, root=declared.root, pieces=declared.pieces, limit=hour):
         self.root, self.pieces, self.limit = root, {piece.name: piece for piece in pieces}, limit
-        self.path = root / "build/release_journal.json"
+        self.path = root / journal_of_it
         self.commit = self.commit_here()
         self.journal = json.loads(self.path.read_text()) if self.path.exists() else {}
 
@@ -32,23 +35,22 @@ class Release:
         return subprocess.run(["git", *words], cwd=self.root, check=True, capture_output=True, text=True).stdout.strip()
 
     def commit_here(self):
-        """The last commit that changed more than the page written here."""
-        return self.git("log", "-1", "--format=%H", "--", ".", f":!{page_of_it}")
+        """The last commit that changed more than what is written here."""
+        return self.git("log", "-1", "--format=%H", *but_for_these)
 
     def changes(self):
-        """What is not as committed, but for that page."""
-        return self.git("status", "--porcelain", "--", ".", f":!{page_of_it}")
+        """What is not as committed, but for that."""
+        return self.git("status", "--porcelain", *but_for_these)
 
     def done(self):
         """What is known of this commit: piece to entry."""
-        return self.journal.get(self.commit, {})
+        return {name: entry for name, entry in self.journal.items() if entry["commit"] == self.commit}
 
     def record(self, name, **entry):
         """Writes the journal whole or not at all."""
-        self.journal.setdefault(self.commit, {})[name] = entry
-        self.path.parent.mkdir(exist_ok=True)
+        self.journal[name] = {**entry, "commit": self.commit}
         partial = self.path.with_suffix(".partial")
-        partial.write_text(json.dumps(self.journal, indent=1))
+        partial.write_text(json.dumps(self.journal, indent=1, sort_keys=True) + "\n")
         os.replace(partial, self.path)
 
     def run(self, name):
@@ -64,7 +66,7 @@ class Release:
         if changed or self.commit_here() != self.commit:
             result, said = "failed", "the sources changed meanwhile: " + " ".join(changed.split())
             if piece.writes and changed:
-                self.git("stash", "push", "-u", "-m", f"lagroid release {name}", "--", ".", f":!{page_of_it}")
+                self.git("stash", "push", "-u", "-m", f"lagroid release {name}", *but_for_these)
                 said += "; git stash has what was written"
         self.record(name, result=result, reason=said, when=when, seconds=round(time.monotonic() - start, 1), **machine(piece.compiler))
         return result
@@ -93,13 +95,9 @@ class Release:
         return [name for name in self.pieces if self.done().get(name, {}).get("result") != "passed"]
 
     def latest(self, name):
-        """How a piece went when it last ran: of this commit, or else of an earlier one that led to it."""
-        if name in self.done():
-            return {**self.done()[name], "commit": self.commit}
-        earlier = [{**entries[name], "commit": commit} for commit, entries in self.journal.items()
-                   if name in entries and self.leads_here(commit)]
-        # Of those within a minute the one that was written last.
-        return max(reversed(earlier), key=lambda entry: entry["when"], default={"result": "not yet"})
+        """How a piece went when it last ran: on this commit, or on an earlier one that led to it."""
+        entry = self.journal.get(name)
+        return entry if entry and self.leads_here(entry["commit"]) else {"result": "not yet"}
 
     def leads_here(self, commit):
         return subprocess.run(["git", "merge-base", "--is-ancestor", commit, self.commit], cwd=self.root,

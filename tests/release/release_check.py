@@ -9,7 +9,7 @@ import unittest
 
 import pieces as declared
 from pieces import Piece
-from release import Release, main, page_of_it
+from release import Release, journal_of_it, main, page_of_it
 
 
 class Pieces(unittest.TestCase):
@@ -75,8 +75,21 @@ class Pieces(unittest.TestCase):
         for name, commit in commits.items():
             self.assertRegex(page, rf"\| {name} \| .* \| passed \| .* \| {commit[:10]} \|")
         # What another branch saw is not of this one.
+        journal = (self.root / journal_of_it).read_text()
         self.git("checkout", "-q", "-f", "HEAD~1")
+        (self.root / "docs").mkdir(exist_ok=True)
+        (self.root / journal_of_it).write_text(journal)
         self.assertEqual(Release(self.root, pieces).latest("second"), {"result": "not yet"})
+
+    def test_another_machine_knows_what_ran_once_that_is_committed(self):
+        pieces = [self.counted()]
+        self.run_pieces(pieces)
+        self.git("add", "-A")
+        self.git("commit", "-q", "-m", "what ran")
+        elsewhere = self.root / "build/elsewhere"
+        self.git("clone", "-q", ".", str(elsewhere))
+        self.assertEqual(Release(elsewhere, pieces).latest("counted")["result"], "passed")
+        self.assertEqual(Release(elsewhere, pieces).missing(), [])
 
     def test_a_cut_run_goes_on_with_the_next_piece(self):
         def cut():
