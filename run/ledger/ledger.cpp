@@ -42,6 +42,12 @@ double norm_of(const std::vector<double>& values) {
   return v.allFinite() ? v.stableNorm() : v.lpNorm<1>();
 }
 
+static double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 QuantityWatch::QuantityWatch(std::string name, Promise promise, std::size_t width, SizeOf size_of)
     : name_(std::move(name)), promise_(promise), size_of_(size_of), first_(width), last_(width), deviation_(width) {}
 
@@ -137,6 +143,16 @@ void QuantityWatch::judge_conserved(LedgerEntry& e) const {
   }
 }
 
+bool QuantityWatch::grows(double first_half, double second_half) const {
+  const double noise = round_off_walk();
+  const auto exceeds = [&](double later, double earlier) { return !(later <= 1.5 * earlier + noise); };
+  if (!exceeds(second_half, first_half)) return false;
+  const auto middle = envelope_.begin() + std::ptrdiff_t(envelope_.size() + 1) / 2;
+  const auto largest = std::max_element(middle, envelope_.end());
+  return exceeds(median({middle, envelope_.end()}), median({envelope_.begin(), middle})) ||
+         exceeds(median({largest, envelope_.end()}), first_half);
+}
+
 void QuantityWatch::judge_bounded(LedgerEntry& e, double first_half, double second_half) const {
   e.bound = 0.5 * typical_size();
   if (judged_as_no_number(e, size_)) return;
@@ -153,7 +169,7 @@ void QuantityWatch::judge_bounded(LedgerEntry& e, double first_half, double seco
   } else if (samples_ < enough) {
     judge(e, "unjudged", fmt::format("{} of the {} nodes that tell drift from oscillation", samples_, enough));
   } else {
-    judge(e, second_half <= 1.5 * first_half + noise ? "bounded" : "growing");
+    judge(e, grows(first_half, second_half) ? "growing" : "bounded");
   }
 }
 

@@ -72,6 +72,10 @@ class QuantityWatch {
   double typical_size() const;
   void judge_conserved(LedgerEntry& entry) const;
   void judge_bounded(LedgerEntry& entry, double first_half, double second_half) const;
+  /// Whether the largest deviation of the second half, half as much again as that of the first, is more than an
+  /// excursion that came back, of which chaotic motions have some: the usual one (the median of the chunks' largest)
+  /// grew as much, or from the largest on it stayed there.
+  bool grows(double first_half, double second_half) const;
   double round_off_walk() const;
 
   std::string name_;

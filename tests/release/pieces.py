@@ -18,6 +18,7 @@ class Piece:
     lacks: object = lambda: ""  # why it cannot run here, or nothing
     goes_on: bool = False  # a build: what an hour left of it is the next run's
     compiler: str = "g++"
+    after: str = ""  # the piece that builds what it runs
     writes: bool = False  # pages, which must come out as they are; else what was written is put aside
 
 
@@ -72,7 +73,7 @@ def shares(preset, what, count):
                 goes_on=True, compiler=compiler)
     for share in range(1, count + 1):
         yield Piece(f"{preset}-{share}", f"{what}: tests, share {share} of {count}",
-                    (f"ctest --preset {preset} -I {share},,{count}",), compiler=compiler)
+                    (f"ctest --preset {preset} -I {share},,{count}",), compiler=compiler, after=f"{preset}-build")
 
 
 settings = {"sanitizers": " -DLAGROID_TEST_LAWS=ON"}

@@ -57,7 +57,7 @@ class Release:
         """Runs a piece and records how it went."""
         piece, start = self.pieces[name], time.monotonic()
         when = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
-        said = piece.lacks()
+        said = piece.lacks() or self.waits(piece)
         result = "not run" if said else "passed"
         if not said:
             result, said = self.carry_out(piece, start + self.limit)
@@ -70,6 +70,11 @@ class Release:
                 said += "; git stash has what was written"
         self.record(name, result=result, reason=said, when=when, seconds=round(time.monotonic() - start, 1), **machine(piece.compiler))
         return result
+
+    def waits(self, piece):
+        """Why what a piece runs is not there yet."""
+        built = not piece.after or self.done().get(piece.after, {}).get("result") == "passed"
+        return "" if built else f"{piece.after} has not passed"
 
     def carry_out(self, piece, until):
         folder = self.root / "build/release_logs"

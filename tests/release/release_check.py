@@ -115,6 +115,12 @@ class Pieces(unittest.TestCase):
         self.assertFalse((self.root / "build/never").exists())
         self.assertRegex((self.root / page_of_it).read_text(), r"\| afar \| .* \| not run \| .* \| no network \|")
 
+    def test_tests_of_a_build_that_failed_are_not_run(self):
+        pieces = [Piece("a_build", "fails", ("exit 1",)), Piece("tests", "of it", ("touch build/never",), after="a_build")]
+        self.assertEqual(self.run_pieces(pieces)[0], 1)
+        self.assertEqual(self.results(pieces), {"a_build": "failed", "tests": "not run"})
+        self.assertFalse((self.root / "build/never").exists())
+
     def test_an_hour_ends_a_piece_and_a_build_goes_on(self):
         pieces = [Piece("tests", "last", ("sleep 60",)), Piece("a_build", "lasts", ("sleep 60",), goes_on=True)]
         self.assertEqual(self.run_pieces(pieces, limit=0.2)[0], 1)

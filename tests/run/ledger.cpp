@@ -50,6 +50,20 @@ TEST(Ledger, OscillationIsBoundedAndGrowthIsNot) {
   EXPECT_EQ(judge(Promise::bounded, 50, [](long k) { return 1 + 1e-4 * double(k); }).verdict, "unjudged");
 }
 
+/// Chaotic motions have excursions of energy now and then, and the largest is in the second half as often as not.
+TEST(Ledger, ExcursionsThatComeBackAreNoGrowth) {
+  const auto with = [](const auto& more) {
+    return judge(Promise::bounded, 20000, [&](long k) { return 1 + 1e-3 * std::sin(0.1 * double(k)) + more(k); })
+        .verdict;
+  };
+  EXPECT_EQ(with([](long k) { return k >= 15000 && k < 15200 ? 1e-2 : 0; }), "bounded");
+  EXPECT_EQ(with([](long k) { return k >= 15000 ? 1e-2 : 0; }), "growing");
+  EXPECT_EQ(with([](long k) { return k >= 19900 ? 1e-2 : 0; }), "growing") << "late, and not back";
+  // Excursions above a deviation that grows.
+  EXPECT_EQ(with([](long k) { return 3e-7 * double(k) + (k % 5000 == 4000 ? 1e-3 + 6e-7 * double(k) : 0); }),
+            "growing");
+}
+
 TEST(Ledger, NumbersThatAreNoneAreBrokenAndSaySo) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   for (const Promise promise : {Promise::conserved, Promise::bounded})

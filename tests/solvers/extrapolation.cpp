@@ -115,7 +115,8 @@ laws::OrderProblem problem(const M& space, F field, typename M::Point start, int
   };
   ControlledLieGroupIntegrator exact(space, field, lie_group_methods::munthe_kaas_54, start, {.tolerance = 1e-15});
   EXPECT_TRUE(exact.advance_to(2).converged());
-  return {end, flat(exact.point()), coarsest, rows == 2 ? 1e-11 : 1e-13};
+  // Round-off, 1e-14 of both, is no part of the slope above this.
+  return {end, flat(exact.point()), coarsest, rows == 2 ? 1e-11 : 3e-13};
 }
 
 TEST(Extrapolation, HasTheOrderOfItsRows) {
@@ -263,7 +264,11 @@ TEST(Extrapolation, SaysWhyItStops) {
   const auto begin = [](const auto& field, double tolerance) {
     return ExtrapolationIntegrator(Spheres<1>{}, field, Point(0, 0, 1), {.tolerance = tolerance});
   };
-  const auto undefined = [](double t, const Point&, Point& u) { u.setConstant(t < 1 ? 1.0 : std::nan("")); };
+  // A field that turns: of a constant one there are no errors but round-off, which would choose the steps.
+  const auto undefined = [](double t, const Point& z, Point& u) {
+    u << 1 + z(1) * z(2), std::cos(2 * t) + z(0), z(2);
+    if (t >= 1) u.setConstant(std::nan(""));
+  };
   auto stopped = begin(undefined, 1e-12);
   EXPECT_EQ(to_string(stopped.advance_to(2).status), to_string(SolveStatus::not_finite));
   // The last value of a row that is used is at its last step but one.

@@ -146,12 +146,12 @@ void SceneDerivatives::arrange(const Multibody& motion) {
   std::iota(order.begin(), order.end(), 0);
   std::rotate(order.begin(), order.begin() + rows(), order.end());
   const std::vector<int> directions = coloured(columns_, order, rows());
-  const int everything = directions.empty() ? 0 : 1 + *std::max_element(directions.begin(), directions.end());
+  const int of_everything = directions.empty() ? 0 : 1 + *std::max_element(directions.begin(), directions.end());
 
   passes_.clear();
-  for (int first = 0; first <= everything; first += varied_at_once) {
+  for (int first = 0; first <= of_everything; first += varied_at_once) {
     Pass& pass = passes_.emplace_back();
-    everything_ = everything - first;
+    everything_ = of_everything - first;
     const auto tangent_of = [&](int column) {
       VariedTangent out{};
       if (const int k = directions[std::size_t(column)] - first; 0 <= k && k < varied_at_once)
