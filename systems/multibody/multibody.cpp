@@ -390,13 +390,22 @@ void Multibody::end_part(const SceneState& node) {
   state_.time_compensation = node.time_compensation;
   // What was long for the part is short for a step; of a very short one there is nothing to be learned.
   const double longer = state_.step > 1e-3 * size ? size / state_.step : 1;
-  const auto lengthen = [longer](SceneState::Guess& guess) {
-    for (auto& multipliers : guess.multipliers)
-      for (double& lambda : multipliers) lambda *= longer;
+  // But the multipliers of joints have the impulse of what happened between parts, and are no guess for a step: those
+  // of the whole step are. The momenta are made of those of vakonomic rows.
+  const auto go_on = [&](SceneState::Guess& guess, const SceneState::Guess& of_step) {
+    for (const Model::Batch& batch : model_.rows.batches)
+      for (std::size_t k = 0; k < guess.multipliers.size(); ++k)
+        for (int row = batch.row; row < batch.row + batch.count * batch.joints->rows(); ++row) {
+          double& lambda = guess.multipliers[k][std::size_t(row)];
+          if (batch.role == Role::vakonomic)
+            lambda *= longer;
+          else
+            lambda = model_.is_on(batch) ? of_step.multipliers[k][std::size_t(row)] : 0;
+        }
     for (Vec& turn : guess.turns) turn *= longer;
   };
-  lengthen(state_.guess);
-  for (SceneState::Guess& stage : state_.stages) lengthen(stage);
+  go_on(state_.guess, node.guess);
+  for (std::size_t i = 0; i < state_.stages.size(); ++i) go_on(state_.stages[i], node.stages[i]);
   state_.step = size;
   if (state_.control) state_.control->pass(time_scale_rate(), size);
   follow_state();

@@ -74,7 +74,7 @@ class Multibody {
   /// Visits the state.
   void serialize(NumberArchive& archive);
   /// Goes on from here by usual steps, after one of another size, as from the node at which that state is, with its
-  /// index, time and step; controlled ones follow the time scale here.
+  /// index, time, step and multipliers; controlled ones follow the time scale here.
   void end_part(const SceneState& node);
 
   /// What can be switched (Scene::begin_switch), and whether it acts. The first is all that has no name.

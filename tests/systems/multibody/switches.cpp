@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lagroid::multibody_tests::switches_tests {
 namespace {
@@ -227,6 +229,48 @@ TEST(Switches, StepsGoOnAfterParts) {
     return most;
   };
   EXPECT_GT(std::log2(distance(0.01) / distance(0.005)), 2.5);
+}
+
+/// Whatever pulls at a rod within a step, and wherever in it, the bob stays on its side of the rod: the other solution
+/// of a step is the opposite place.
+TEST(Switches, PullsWithinAStepLeaveABobOnItsSide) {
+  constexpr double h = 0.01;
+  const auto largest_move = [](double share, const auto& pull) {
+    Sling sling;
+    const Body bob = sling.bob;
+    const int linear = sling.scene.linear_of(bob);
+    Multibody motion(std::move(sling.scene), h);
+    advance(motion, 20);
+    const SceneState begin = motion.state();
+    advance(motion, 1);
+    const SceneState whole = motion.state();
+    motion.restore(begin);
+    EXPECT_TRUE(motion.advance_by(share * h).converged());
+    pull(motion, linear);
+    EXPECT_TRUE(motion.advance_by((1 - share) * h).converged());
+    motion.end_part(whole);
+    double most = 0;
+    Vec before = motion.configuration()(motion(bob.centre));
+    for (int k = 0; k < 50; ++k) {
+      EXPECT_TRUE(motion.advance().converged());
+      const Vec now = motion.configuration()(motion(bob.centre));
+      most = std::max(most, (now - before).norm());
+      before = now;
+    }
+    return most;
+  };
+  const auto strike = [](Multibody& motion, int linear) {
+    motion.kick(linear, 3 * motion.configuration().x[0], {}, Vec::Zero());
+  };
+  const auto go_taut = [&strike](Multibody& motion, int linear) {
+    motion.switch_to(let_go);
+    strike(motion, linear);
+    motion.switch_to({1, 1, 1});
+  };
+  for (const double share : {1e-3, 0.01, 0.1, 0.5, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999}) {
+    EXPECT_LT(largest_move(share, strike), 0.2) << share;
+    EXPECT_LT(largest_move(share, go_taut), 0.2) << share;
+  }
 }
 
 }  // namespace
