@@ -117,15 +117,48 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
   }
 }
 
-/// What the page shows.
-OrderedJson data_of_page(const OrderedJson& summary, const ViewOptions& options) {
+/// Whether it is of what `lagroid control` found.
+bool is_of_control(const OrderedJson& summary) {
+  return summary.is_object() && summary.contains("problem") && summary.contains("groupoid");
+}
+
+/// What was run, how it ended and what is said of it.
+OrderedJson told_of_run(const OrderedJson& summary) {
   OrderedJson run;
   for (const char* key : {"system", "status", "steps", "notes"}) run[key] = summary.at(key);
-  run["message"] = summary.value("message", "");
   run["ledger"] = summary.at("ledger").at("entries");
+  return run;
+}
+OrderedJson told_of_control(const OrderedJson& summary) {
+  OrderedJson run{{"system", summary.at("problem")},
+                  {"status", summary.at("status")},
+                  {"steps", summary.at("stages")},
+                  {"notes", OrderedJson::array()},
+                  {"ledger", OrderedJson::array()}};
+  const auto note = [&](const std::string& text) { run["notes"].push_back(text); };
+  note(fmt::format("cost {:.10g}, duration {:.10g}", summary.at("cost").get<double>(),
+                   summary.at("duration").get<double>()));
+  double begin = 0;
+  for (const OrderedJson& phase : summary.value("phases", OrderedJson::array())) {
+    const double end = begin + phase.at("duration").get<double>();
+    note(fmt::format("phase \"{}\" from {:.6g} to {:.6g}", phase.at("name").get<std::string>(), begin, end));
+    begin = end;
+  }
+  for (const OrderedJson& each : summary.at("active"))
+    note(fmt::format("bands: {} acts", each.at("name").get<std::string>()));
+  for (const OrderedJson& each : summary.at("violated")) note("violated: " + each.get<std::string>());
+  for (const OrderedJson& each : summary.at("repeated")) note("repeated: " + each.get<std::string>());
+  return run;
+}
+
+/// What the page shows.
+OrderedJson data_of_page(const OrderedJson& summary, const ViewOptions& options) {
+  OrderedJson run = is_of_control(summary) ? told_of_control(summary) : told_of_run(summary);
+  run["message"] = summary.value("message", "");
   run["shapes"] = summary.at("picture").at("shapes");
   run["panels"] = summary.at("picture").at("panels");
-  Columns columns = read_columns(file_of_run(options.run, "trajectory.h5"), options.most_rows);
+  const char* const data = is_of_control(summary) ? "control.h5" : "trajectory.h5";
+  Columns columns = read_columns(file_of_run(options.run, data), options.most_rows);
   if (columns.recorded == 0)
     throw RunError(fmt::format("{}: nothing was computed ({}); there is nothing to show", options.run,
                                summary.value("message", summary.at("status").get<std::string>())));
@@ -148,26 +181,28 @@ OrderedJson data_of_page(const OrderedJson& summary, const ViewOptions& options)
   return run;
 }
 
-/// The folder, refused where it holds something else than a run; none where there is no such folder.
-std::optional<OutputFolder> folder_there(const fs::path& folder) {
-  std::error_code ignored;
-  if (!fs::is_directory(folder, ignored)) return std::nullopt;
-  refuse_found_control(folder);
-  return folder_of_run(folder);
+bool holds_control(const fs::path& folder) {
+  const auto summary = read_json(contents(folder / "summary.json").value_or(""));
+  return summary && is_of_control(*summary);
 }
 
 }  // namespace
 
 void refuse_found_control(const fs::path& folder) {
-  const auto summary = read_json(contents(folder / "summary.json").value_or(""));
-  if (summary && summary->is_object() && summary->contains("problem") && summary->contains("groupoid"))
+  if (holds_control(folder))
     throw RunError(fmt::format(
         "{}: holds what lagroid control found, and no run; its picture is {}, and its numbers are in trajectory.csv",
         folder.string(), (folder / "plot.svg").string()));
 }
 
 fs::path write_view(const ViewOptions& options) {
-  const auto held = folder_there(options.run);
+  std::error_code ignored;
+  std::optional<OutputFolder> held;
+  if (holds_control(options.run)) {
+    held.emplace(options.run, OutputKind::optimum, std::nullopt, kept_pages);
+  } else if (fs::is_directory(options.run, ignored)) {
+    held.emplace(folder_of_run(options.run));
+  }
   file_of_run(options.run, "summary.json");
   const std::string data =
       from_summary(options.run, [&](const OrderedJson& summary) { return in_script(data_of_page(summary, options)); });
@@ -182,7 +217,12 @@ fs::path write_view(const ViewOptions& options) {
 }
 
 std::vector<fs::path> draw_plots(const PlotOptions& options) {
-  const auto held = folder_there(options.run);
+  std::error_code ignored;
+  std::optional<OutputFolder> held;
+  if (fs::is_directory(options.run, ignored)) {
+    refuse_found_control(options.run);
+    held.emplace(folder_of_run(options.run));
+  }
   const fs::path file = file_of_run(options.run, "plot.gp");
   const fs::path excerpt = file_of_run(options.run, "trajectory.csv").parent_path() / "plot.csv";
   const auto its_own = [&](const OrderedJson& summary) {

@@ -18,8 +18,8 @@ struct ViewOptions {
 };
 
 /// Writes view.html into the run's folder: one page that needs nothing else, with the bodies of the run in motion, its
-/// curves and its ledger. Of a longer trajectory, evenly chosen rows and the last. Throws RunError; OutputError where
-/// the page cannot be written.
+/// curves and its ledger; of what `lagroid control` found the motion, with bands where inequalities act. Of a longer
+/// trajectory, evenly chosen rows and the last. Throws RunError; OutputError where the page cannot be written.
 std::filesystem::path write_view(const ViewOptions& options);
 
 struct PlotOptions {

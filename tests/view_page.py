@@ -108,6 +108,49 @@ class Page(unittest.TestCase):
                 errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
                 self.assertEqual(errors, [])
 
+    def test_what_control_finds(self):
+        """Motion where there is a picture, controls in steps, and bands behind the curves where inequalities act."""
+        scenes = {"arm_of_bodies": 20, "keep_out": 30, "rolled_ball": 30, "through_a_gate": 0, "fastest_stop": 30}
+        for scene, stages in scenes.items():
+            with self.subTest(scene), tempfile.TemporaryDirectory() as folder:
+                out = pathlib.Path(folder) / "found"
+                fewer = ["--set", f"horizon.stages={stages}"] if stages else []
+                arguments = ["--set", "solver.starts=2", *fewer, "--out", str(out)]
+                found = lagroid("control", str(EXAMPLES / "control" / f"{scene}.toml"), *arguments)
+                self.assertEqual(found.returncode, 0, found.stderr)
+                self.assertEqual(lagroid("view", str(out)).returncode, 0)
+                self.open(out / "view.html")
+                has_picture = DRIVER.execute_script("return lagroid.stage !== null")
+                self.assertEqual(has_picture, scene != "fastest_stop")
+                nothing = DRIVER.find_element("id", "nothing")
+                self.assertEqual("no picture in space" in nothing.text, not has_picture)
+                if has_picture:
+                    stage = DRIVER.find_element("id", "bodies")
+                    self.assertGreater(colours(stage.screenshot_as_base64), 20, "the stage is blank")
+                self.assertGreater(min(DRIVER.execute_script("return lagroid.plots.points()")), 10)
+                # A pixel of a band has its colour, at the top where no curve is.
+                shaded = """const run = JSON.parse(document.getElementById("run").textContent);
+                    return run.panels.flatMap(({ bands }, i) => bands.map(([from, to]) => {
+                      const { chart } = lagroid.plots.plots[i];
+                      chart.draw();
+                      const scale = chart.currentDevicePixelRatio;
+                      const x = chart.scales.x.getPixelForValue((from + to) / 2);
+                      const pixel = chart.ctx.getImageData(x * scale, (chart.chartArea.top + 2) * scale, 1, 1).data;
+                      return [...pixel].slice(0, 3);
+                    }));"""
+                self.assertTrue(eventually(lambda: [0xF6, 0xEA, 0xD0] in DRIVER.execute_script(shaded)), "no band")
+                # Controls are constant along an arrow: the mark is at the number of the row that the arrow leads to.
+                steps = DRIVER.execute_script(
+                    """const run = JSON.parse(document.getElementById("run").textContent);
+                    const i = run.panels.findIndex(({ steps }) => steps);
+                    const values = run.columns[run.panels[i].curves[0]];
+                    return [lagroid.plots.plots[i].curves[0](4.5), values[5], values[0]];"""
+                )
+                self.assertEqual(steps[0], steps[1])
+                self.assertIsNone(steps[2])
+                errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
+                self.assertEqual(errors, [])
+
     def test_what_happened(self):
         """Events are points on the curves, a section of their own, and a list that leads to their times."""
         with tempfile.TemporaryDirectory() as folder:

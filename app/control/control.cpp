@@ -4,6 +4,7 @@
 #include "../families/family.hpp"
 #include "control_files.hpp"
 #include "control_problem.hpp"
+#include "results/row_words.hpp"
 
 #include <lagroid/run/interrupt.hpp>
 #include <lagroid/run/reports/markup.hpp>
@@ -26,6 +27,12 @@ std::string listing() {
       out += fmt::format("    {:<24} {}\n", "parameters." + key.name, listed(key));
   }
   return out;
+}
+
+/// What stands first in the lists that a message speaks of.
+std::string what_first(const ControlResult& found) {
+  if (const auto repeated = repeated_in_words(found); !repeated.empty()) return ": " + repeated.front();
+  return found.report.worst.empty() ? "" : "; most of all " + in_words(found, found.report.worst.front());
 }
 
 }  // namespace
@@ -76,7 +83,8 @@ int control(const ControlCommandOptions& options) {
     return exit_interrupted;
   }
   if (found.report.converged()) return code_after_writing(0, options.scene);
-  complain(fmt::format("{}: {}: {}", options.scene, to_string(found.report.status), found.report.message));
+  complain(fmt::format("{}: {}: {}{}", options.scene, to_string(found.report.status), found.report.message,
+                       what_first(found)));
   return exit_failed;
 }
 

@@ -1,5 +1,9 @@
 #include "control_files.hpp"
 
+#include "results/acting.hpp"
+#include "results/recorded_control.hpp"
+#include "results/row_words.hpp"
+
 #include <lagroid/run/files/output.hpp>
 #include <lagroid/run/reports/clock.hpp>
 #include <lagroid/run/reports/gnuplot.hpp>
@@ -20,23 +24,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 6> files{"trajectory.csv", "summary.json", "summary.txt",
-                                           "plot.gp",        "plot.svg",     "plot.png"};
-
-/// Which phase each stage is of; empty where the scene has no list of them.
-std::vector<std::size_t> phase_of_stages(const ControlResult& found) {
-  std::vector<std::size_t> out;
-  for (std::size_t p = 0; p < found.phases.size(); ++p) out.insert(out.end(), std::size_t(found.phases[p].stages), p);
-  return out;
-}
+constexpr std::array<const char*, 7> files{"control.h5", "trajectory.csv", "summary.json", "summary.txt",
+                                           "plot.gp",    "plot.svg",       "plot.png"};
 
 /// A row for each node; controls, costates and phase are those of the arrow that begins there, and none at the last.
 std::string trajectory_csv(const ControlResult& found) {
   std::string out = "time";
   for (const auto& name : found.states) out += "," + name;
   for (const auto& name : found.controls) out += "," + name;
-  const std::size_t costates = found.costate_rows.empty() ? 0 : found.costate_rows.front().size();
-  for (std::size_t i = 0; i < costates; ++i) out += fmt::format(",costate_{}", i + 1);
+  const std::vector<CostateColumn> costates = costate_columns(found);
+  for (const CostateColumn& each : costates) out += "," + each.name;
   if (!found.phases.empty()) out += ",phase";
   out += "\n";
   const std::vector<std::size_t> phase_of = phase_of_stages(found);
@@ -46,7 +43,7 @@ std::string trajectory_csv(const ControlResult& found) {
     const bool has_arrow = k < found.control_rows.size();
     for (std::size_t i = 0; i < found.controls.size(); ++i)
       out += has_arrow ? fmt::format(",{:.17g}", found.control_rows[k][i]) : ",";
-    for (std::size_t i = 0; i < costates; ++i)
+    for (std::size_t i = 0; i < costates.size(); ++i)
       out += has_arrow ? fmt::format(",{:.17g}", found.costate_rows[k][i]) : ",";
     if (!found.phases.empty()) out += has_arrow ? fmt::format(",{}", phase_of[k] + 1) : ",";
     out += "\n";
@@ -84,46 +81,15 @@ std::string phase_bounds(const ControlResult& found) {
   return out;
 }
 
-/// Shades the stages for which `is_marked(k)`.
-template <class Mark> std::string bands(const ControlResult& found, const Mark& is_marked) {
+/// Shades stages.
+std::string bands(const ControlResult& found, const std::vector<StageRange>& stages) {
   std::string out;
-  const std::size_t stages = found.control_rows.size();
-  for (std::size_t k = 0, next = 0; k < stages; k = next + 1) {
-    for (next = k; next < stages && is_marked(next); ++next) continue;
-    if (next > k)
-      out += fmt::format(
-          "set object rectangle from {:.17g}, graph 0 to {:.17g}, graph 1 behind fillcolor rgb '#f6ead0' "
-          "fillstyle solid noborder\n",
-          found.times[k], found.times[next]);
-  }
+  for (const StageRange& each : stages)
+    out += fmt::format(
+        "set object rectangle from {:.17g}, graph 0 to {:.17g}, graph 1 behind fillcolor rgb '#f6ead0' "
+        "fillstyle solid noborder\n",
+        found.times[each.first], found.times[each.end]);
   return out;
-}
-
-/// Where a multiplier of an inequality acts, bounds of controls among them: to a millionth of the largest.
-std::string bands_of_states(const ControlResult& found) {
-  double largest = 0;
-  for (const auto& row : found.inequality_rows)
-    for (const double z : row) largest = std::max(largest, z);
-  return bands(found, [&](std::size_t k) {
-    return k < found.inequality_rows.size() &&
-           std::any_of(found.inequality_rows[k].begin(), found.inequality_rows[k].end(),
-                       [&](double z) { return z > 1e-6 * largest; });
-  });
-}
-
-/// Where a control is at a bound, to a millionth of its size.
-std::string bands_of_controls(const ControlResult& found) {
-  const std::vector<std::size_t> phase_of = phase_of_stages(found);
-  return bands(found, [&](std::size_t k) {
-    const auto& lower = phase_of.empty() ? found.lower : found.phases[phase_of[k]].lower;
-    const auto& upper = phase_of.empty() ? found.upper : found.phases[phase_of[k]].upper;
-    const auto is_at = [](double bound, double u) {
-      return std::isfinite(bound) && std::abs(u - bound) <= 1e-6 * std::abs(bound);
-    };
-    for (std::size_t i = 0; i < found.controls.size(); ++i)
-      if (is_at(lower[i], found.control_rows[k][i]) || is_at(upper[i], found.control_rows[k][i])) return true;
-    return false;
-  });
 }
 
 /// States above, controls below: their bounds are lines, and bands are where inequalities act.
@@ -156,7 +122,7 @@ std::string gnuplot_script(const ControlResult& found) {
           controls += fmt::format(", {:.17g} with lines dashtype 2 linecolor 'gray' notitle", bound);
       }
   }
-  const std::string state_bands = bands_of_states(found);
+  const std::string state_bands = bands(found, where_inequalities_act(found));
   for (const auto& [file, terminal] : {std::pair("plot.svg", "svg size 900,700 background 'white' noenhanced"),
                                        std::pair("plot.png", "pngcairo size 900,700 noenhanced")})
     out += fmt::format(
@@ -164,23 +130,10 @@ std::string gnuplot_script(const ControlResult& found) {
         "unset object\n{}set title 'controls{}'\n{}{}plot {}\nunset multiplot\nset output\nunset object\n"
         "unset arrow\nunset label\n",
         terminal, file, phase_borders(found), state_bands, state_bands.empty() ? "" : "; bands: an inequality acts",
-        states, bands_of_controls(found), are_bounded ? ", and their bounds; bands: one is reached" : "",
-        phase_bounds(found), last, controls);
+        states, bands(found, where_bounds_are_reached(found)),
+        are_bounded ? ", and their bounds; bands: one is reached" : "", phase_bounds(found), last, controls);
   return out;
 }
-
-/// "equality 2 of stage 17 by 0.03".
-std::string in_words(const ControlResult& found, const ConstraintViolation& each) {
-  if (each.is_equality && each.row >= found.equations)
-    return fmt::format("condition {} on a node of stage {} by {:.2g}", each.row - found.equations + 1, each.stage + 1,
-                       each.amount);
-  return fmt::format("{} {} of stage {} by {:.2g}", each.is_equality ? "equality" : "inequality", each.row + 1,
-                     each.stage + 1, each.amount);
-}
-
-}  // namespace
-
-namespace {
 
 std::string loop_text(const ControlResult& found) {
   const LoopSummary& loop = *found.loop;
@@ -245,6 +198,22 @@ std::string crossover_text(const CrossoverReport& r) {
   return "";
 }
 
+/// Which inequalities act, and at which stages: of many stretches the first few.
+std::string acting_text(const ControlResult& found) {
+  constexpr std::size_t most = 5;
+  std::string out;
+  for (const ActingInequality& each : acting_inequalities(found)) {
+    std::vector<std::string> stages;
+    for (std::size_t i = 0; i < std::min(most, each.stages.size()); ++i) {
+      const auto& [first, last] = each.stages[i];
+      stages.push_back(first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last));
+    }
+    out += fmt::format("  active           {}: stages {}{}\n", each.name, fmt::join(stages, ", "),
+                       each.stages.size() > most ? ", ..." : "");
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string control_text(const ControlResult& found) {
@@ -259,6 +228,7 @@ std::string control_text(const ControlResult& found) {
   out += fmt::format("  KKT residual     {:.1e} stationarity, {:.1e} constraints, {:.1e} complementarity\n",
                      r.stationarity, r.violation, r.complementarity);
   out += crossover_text(found.crossover);
+  out += acting_text(found);
   if (found.costs.size() > 1) {
     std::vector<std::string> others;
     for (std::size_t i = 1; i < std::min<std::size_t>(found.costs.size(), 6); ++i)
@@ -271,6 +241,7 @@ std::string control_text(const ControlResult& found) {
                      found.iterations, r.iterations, duration(found.seconds));
   if (found.interrupted) out += "  interrupted      what is here is the best till then\n";
   for (const auto& each : r.worst) out += fmt::format("  violated         {}\n", in_words(found, each));
+  for (const auto& each : repeated_in_words(found)) out += fmt::format("  repeated         {}\n", each);
   return out;
 }
 
@@ -304,6 +275,17 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   for (const auto& [status, count] : found.outcomes) out["starts"][std::string(to_string(status))] = count;
   out["violated"] = nlohmann::ordered_json::array();
   for (const auto& each : r.worst) out["violated"].push_back(in_words(found, each));
+  out["repeated"] = repeated_in_words(found);
+  out["active"] = nlohmann::ordered_json::array();
+  for (const auto& each : acting_inequalities(found))
+    out["active"].push_back({{"name", each.name}, {"stages", each.stages}});
+  out["costates"] = nlohmann::ordered_json::array();
+  for (const auto& each : costate_columns(found))
+    out["costates"].push_back({{"column", each.name}, {"unit", each.unit}, {"of", each.of}});
+  out["conditions"] = nlohmann::ordered_json::array();
+  for (const auto& each : node_conditions(found))
+    out["conditions"].push_back(
+        {{"column", fmt::format("condition_{}", each.column + 1)}, {"stages", each.stages}, {"name", each.name}});
   out["seconds"] = found.seconds;
   if (found.loop) out["loop"] = loop_json(*found.loop);
   return out;
@@ -315,11 +297,14 @@ OutputFolder folder_for_control(const fs::path& folder, const Section& scene) {
 
 std::vector<fs::path> write_control(const ControlResult& found, const fs::path& folder, std::string& note) {
   const auto make = [&](const fs::path& staging) {
+    write_trajectory(recorded(found), staging / "control.h5");
     write_text(trajectory_csv(found), staging / "trajectory.csv");
-    write_text(json_text(control_json(found)) + "\n", staging / "summary.json");
+    auto summary = control_json(found);
+    summary["picture"] = picture_of(found);
+    write_text(json_text(summary) + "\n", staging / "summary.json");
     write_text(visible(control_text(found), "\n"), staging / "summary.txt");
     write_text(gnuplot_script(found), staging / "plot.gp");
-    return std::vector<std::string>{"trajectory.csv", "summary.json", "summary.txt", "plot.gp"};
+    return std::vector<std::string>{"control.h5", "trajectory.csv", "summary.json", "summary.txt", "plot.gp"};
   };
   return write_and_draw(folder, files, make, {"plot.gp", {"plot.svg", "plot.png"}}, note);
 }

@@ -6,8 +6,10 @@
 ///     const ControlResult found = problem.solve(scene, watch);
 
 #include "../keys/key.hpp"
+#include "results/equation_names.hpp"
 
 #include <lagroid/run/ledger/certificate.hpp>
+#include <lagroid/run/run_result.hpp>
 #include <lagroid/solvers/control/control_search.hpp>
 #include <lagroid/solvers/control/latency.hpp>
 
@@ -49,7 +51,10 @@ struct ControlResult {
   std::string problem;
   std::string groupoid;
   std::vector<std::string> states;
+  std::vector<std::string> state_units;
   std::vector<std::string> controls;
+  std::vector<std::string> control_units;
+  std::string cost_unit = "cost";                    ///< "cost": of several units, or of those that a scene gives
   std::vector<double> times;                         ///< of nodes 0 ... N
   std::vector<std::vector<double>> state_rows;       ///< of nodes
   std::vector<std::vector<double>> control_rows;     ///< of stages 0 ... N-1
@@ -58,7 +63,11 @@ struct ControlResult {
   std::vector<double> lower;                         ///< bounds of the controls, infinite where there are none
   std::vector<double> upper;
   std::vector<PhaseResult> phases = {};  ///< none: the scene has no list of them
-  int equations = 0;                     ///< of a stage; behind them stand conditions on the node where it ends
+  std::vector<EquationName> equations;   ///< of a stage; behind them stand conditions on the node where it ends
+  std::vector<std::vector<std::string>> conditions;  ///< what these say, of each stage
+  std::vector<std::string> inequalities;             ///< what the rows of gamma say
+  std::vector<Shape> shapes;                         ///< what it looks like in space, by columns of states and `seen`
+  std::vector<Columns> seen;                         ///< of nodes: what pictures need beside the states
   ControlReport report;
   CrossoverReport crossover;
   std::vector<double> costs;              ///< of all distinct solutions, cheapest first

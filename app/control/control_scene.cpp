@@ -34,8 +34,8 @@ KeyOf<NumberArray> end_key(const std::string& name, std::span<const std::string>
   return {name, {states.size()}, "", fmt::format("{} of the {}", fmt::join(states, ", "), name)};
 }
 
-KeyOf<NumberArray> bound_key(const std::string& control) {
-  return {control, {2}, "", "least and largest value; the same number twice fixes it", {}, "none"};
+KeyOf<Either> bound_key(const std::string& control) {
+  return range_key(control, "", "least and largest value; the same number twice fixes it");
 }
 
 /// "free_start" or "free_end".
@@ -52,8 +52,7 @@ namespace phase_keys {
 const KeyOf<Text> name{"name", {}, "", "what it is called", {}, "phase 1, phase 2 and so on"};
 const KeyOf<Number> duration{"duration", {positive}, "s", "of it; where it is free, the first guess"};
 const KeyOf<Flag> free{"free", {}, "", "true: the duration is an unknown", false};
-const KeyOf<NumberArray> range{"range", {2, nonnegative}, "s", "shortest and longest duration, where it is free", {},
-                               "any"};
+const KeyOf<Either> range = range_key("range", "s", "shortest and longest duration, where it is free", nonnegative);
 const KeyOf<Whole> stages{"stages", {1, 1'000'000}, "", "arrows of it", 50L};
 const KeyOf<Flag> constraints{"constraints", {}, "", "false: those of the problem do not hold in it", true};
 
@@ -65,11 +64,12 @@ ControlBounds read_bounds(const Section& bounds, std::span<const std::string> co
                           const ControlBounds& otherwise) {
   ControlBounds out = otherwise;
   for (std::size_t i = 0; i < controls.size(); ++i) {
+    constexpr double none = std::numeric_limits<double>::infinity();
     if (!bounds.has(controls[i])) continue;
-    const auto range = read_key_or(bounds, bound_key(controls[i]), {});
-    if (!(range[0] <= range[1]))
-      bounds.fail(controls[i], fmt::format("{} is not below {}; give the lower bound first", range[0], range[1]));
-    out[i] = {range[0], range[1]};
+    out[i] = read_range(bounds, controls[i], any_number, {-none, none});
+    if (!(out[i].first <= out[i].second))
+      bounds.fail(controls[i],
+                  fmt::format("{} is not below {}; give the lower bound first", out[i].first, out[i].second));
   }
   return out;
 }
@@ -111,12 +111,12 @@ std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::s
     phase.duration_is_free = read_key(table, phase_keys::free);
     if (table.has("range")) {
       if (!phase.duration_is_free) table.fail("range", "its duration is given; leave out range, or let it be free");
-      const auto range = read_key_or(table, phase_keys::range, {});
-      if (!(range[0] < phase.duration && phase.duration < range[1]))
+      const auto [shortest, longest] = read_range(table, "range", nonnegative, {phase.shortest, phase.longest});
+      if (!(shortest < phase.duration && phase.duration < longest))
         table.fail("range", fmt::format("the first guess of the duration, {}, is not between {} and {}", phase.duration,
-                                        range[0], range[1]));
-      phase.shortest = range[0];
-      phase.longest = range[1];
+                                        shortest, longest));
+      phase.shortest = shortest;
+      phase.longest = longest;
     }
     phase.stages = read_key(table, phase_keys::stages);
     phase.constraints_hold = read_key(table, phase_keys::constraints);

@@ -4,6 +4,7 @@
 
 #include "../keys/parameter.hpp"
 #include "../reading/kinds.hpp"
+#include "../scenes/arrow_format.hpp"
 #include "control_scene.hpp"
 #include "problems/states_of_problem.hpp"
 #include "scene_loop.hpp"
@@ -46,13 +47,16 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   }
   using Parametrised = std::remove_reference_t<decltype(parametrised_of(std::declval<Sys&>()))>;
 
-  /// Of each inequality that may be one of states the parameter that sets it.
+  /// What each inequality is called: one that may be of states by the parameter that sets it.
   using Limits = std::array<std::string_view, std::size_t(Sys::inequalities)>;
+  /// What it looks like in space, by columns of its states and, of an attitude, `attitude_columns`.
+  using Shapes = std::vector<Shape> (*)(const Sys&);
 
-  ControlProblemOf(std::string_view name, std::string_view summary) requires(Sys::inequalities == 0)
-      : name_(name), summary_(summary) {}
-  ControlProblemOf(std::string_view name, std::string_view summary, const Limits& limits)
-      : name_(name), summary_(summary), limits_(limits) {}
+  ControlProblemOf(std::string_view name, std::string_view summary,
+                   Shapes shapes = nullptr) requires(Sys::inequalities == 0)
+      : name_(name), summary_(summary), shapes_(shapes) {}
+  ControlProblemOf(std::string_view name, std::string_view summary, const Limits& limits, Shapes shapes = nullptr)
+      : name_(name), summary_(summary), limits_(limits), shapes_(shapes) {}
   std::string_view name() const override { return name_; }
   std::string_view summary() const override { return summary_; }
   std::vector<std::string> states() const override { return {Sys::states.begin(), Sys::states.end()}; }
@@ -75,6 +79,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       out = described(posed, search(posed, keep_going));
     }
     out.seconds = processor_time() - before;
+    name_numbers(posed, out);
     out.lower.assign(posed.task.lower.begin(), posed.task.lower.end());
     out.upper.assign(posed.task.upper.begin(), posed.task.upper.end());
     return out;
@@ -342,7 +347,6 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.states = states();
     out.controls = controls();
     out.by_ipopt = posed.scene.method == ControlMethod::ipopt;
-    out.equations = Sys::equalities;
     out.report = best.report;
     out.crossover = best.crossover;
     out.outcomes = found.outcomes;
@@ -376,9 +380,64 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     return out;
   }
 
+  /// Names, units and what is seen.
+  void name_numbers(const Posed& posed, ControlResult& out) const {
+    out.state_units = {Sys::state_units.begin(), Sys::state_units.end()};
+    out.control_units = {Sys::control_units.begin(), Sys::control_units.end()};
+    out.equations = equation_names<Sys>();
+    const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
+    out.cost_unit = cost_unit_of(phases.front().system);
+    for (const auto& phase : phases)
+      if (cost_unit_of(phase.system) != out.cost_unit) out.cost_unit = "cost";
+    out.inequalities.assign(limits_.begin(), limits_.end());
+    for (const auto& each : duration_bounds_of(phases))
+      out.inequalities.emplace_back(each.sign > 0 ? "longest duration" : "shortest duration");
+    for (const auto& each : control_bounds_of(phases))
+      out.inequalities.push_back(fmt::format("{} bound of {}", each.sign > 0 ? "upper" : "lower",
+                                             Sys::control_names[std::size_t(each.control)]));
+    name_conditions(posed, phases, out);
+    if (shapes_ != nullptr) out.shapes = shapes_(posed.task.system);
+    see_attitude(out);
+  }
+  static void name_conditions(const Posed& posed, const std::vector<ControlPhase<Sys>>& phases, ControlResult& out) {
+    static_assert(Sys::node_equalities == 0 && Sys::end_equalities == 0, "conditions of a system's own are not named");
+    long stages = 0;
+    for (const auto& phase : phases) stages += phase.stages;
+    out.conditions.resize(std::size_t(stages));
+    const auto add = [&](const std::shared_ptr<const NodeCondition<G>>& condition, long stage,
+                         const std::string& where) {
+      if (!condition) return;
+      for (const std::string& each : static_cast<const StateCondition<G>&>(*condition).words(Sys::states))
+        out.conditions[std::size_t(stage)].push_back(each + where);
+    };
+    add(posed.task.start_condition, 0, " at the start");
+    long end = 0;
+    for (std::size_t p = 0; p < phases.size(); ++p) {
+      end += phases[p].stages;
+      if (phases[p].end_condition)
+        add(phases[p].end_condition, end - 1, fmt::format(" where the phase \"{}\" ends", posed.scene.phases[p].name));
+    }
+    add(posed.task.end_condition, stages - 1, " at the end");
+  }
+  /// The quaternion of a rotation vector among the states.
+  static void see_attitude(ControlResult& out) {
+    for (int i = 0; i < States::size; ++i) {
+      if (!States::is_attitude(i)) continue;
+      Columns attitude{
+          "attitude", attitude_columns, "1", "rotation A from body to space, unit quaternion w, x, y, z", false, {}};
+      for (const std::vector<double>& state : out.state_rows) {
+        const auto q = quaternion_of(SO3::exp(Vector<double, 3>(state.data() + i)));
+        attitude.values.insert(attitude.values.end(), q.begin(), q.end());
+      }
+      out.seen.push_back(std::move(attitude));
+      return;
+    }
+  }
+
   std::string_view name_;
   std::string_view summary_;
   Limits limits_{};
+  Shapes shapes_ = nullptr;
 };
 
 }  // namespace lagroid::app

@@ -1,5 +1,5 @@
 #pragma once
-/// The keys of [horizon] and [solver] that every optimal control problem has.
+/// The keys of [horizon] and [solver] that every optimal control problem has, and how bounds are written.
 
 #include "../keys/key.hpp"
 
@@ -10,6 +10,8 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
@@ -41,6 +43,29 @@ inline KeyOf<OneOf> method_key() {
   const auto words = words_of(control_words);
   return {
       "method", {words}, "", "on the manifold of trajectories; by IPOPT in a chart of it, as a check", words.front()};
+}
+
+/// Least and largest value: both as an array, or one of them, or both, by name.
+inline KeyOf<Either> range_key(const std::string& name, const std::string& unit, const std::string& meaning,
+                               const NumberRule& rule = any_number) {
+  const Table one_side{{KeyOf<Number>{"min", {rule}, unit, "least value", {}, "none"},
+                        KeyOf<Number>{"max", {rule}, unit, "largest value", {}, "none"}}};
+  return {name, {{{NumberArray{2, rule}}, {one_side}}}, unit, meaning, {}, "none"};
+}
+/// What stands there; a side that is left out is that of `otherwise`. Throws SceneError.
+inline std::pair<double, double> read_range(const Section& at, const std::string& name, const NumberRule& rule,
+                                            std::pair<double, double> otherwise) {
+  if (!at.has(name)) return otherwise;
+  if (!at.is_table(name)) {
+    const std::vector<double> both = read_key(at, KeyOf<NumberArray>{name, {2, rule}, "", "least and largest value"});
+    return {both[0], both[1]};
+  }
+  const Section sides = at.section(name, "min or max");
+  if (!sides.has("min") && !sides.has("max")) at.fail(name, "give min, max or both");
+  const std::pair<double, double> out{sides.number_or("min", otherwise.first, rule),
+                                      sides.number_or("max", otherwise.second, rule)};
+  sides.finish();
+  return out;
 }
 
 inline std::vector<Key> search_keys() {

@@ -3,7 +3,7 @@
 namespace lagroid::app {
 
 StateFormulas::StateFormulas(const std::vector<std::string>& texts, const std::vector<std::string>& names)
-    : count_(int(texts.size())) {
+    : texts_(texts) {
   FormulaGraph graph;
   std::vector<FormulaGraph::Node> formulas;
   std::vector<FormulaGraph::Node> slopes;

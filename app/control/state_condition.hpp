@@ -25,13 +25,14 @@ class StateFormulas {
  public:
   StateFormulas(const std::vector<std::string>& texts, const std::vector<std::string>& names);
 
-  int size() const { return count_; }
+  int size() const { return int(texts_.size()); }
+  const std::vector<std::string>& texts() const { return texts_; }
   void values(const double* state, double* out) const;
   /// Of each formula n first derivatives, then n x n second ones.
   void derivatives(const double* state, double* out) const;
 
  private:
-  int count_;
+  std::vector<std::string> texts_;
   FormulaProgram values_;
   FormulaProgram derivatives_;
   mutable std::vector<double> scratch_;
@@ -56,6 +57,14 @@ template <class G> class StateCondition final : public NodeCondition<G> {
   }
 
   int size() const override { return int(given_.size()) + (on_ ? on_->size() : 0); }
+  /// What each row says: a number of the state that is given, or a formula.
+  template <class Names> std::vector<std::string> words(const Names& states) const {
+    std::vector<std::string> out;
+    for (const int i : given_) out.push_back(std::string(states[std::size_t(i)]) + " as given");
+    if (on_)
+      for (const std::string& text : on_->texts()) out.push_back('"' + text + '"');
+    return out;
+  }
 
   void values(const G&, const ArrowOf<G>& node, double* out) const override {
     const State off = States::offset(start_, node, at_);

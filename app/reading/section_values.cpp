@@ -11,14 +11,24 @@
 
 namespace lagroid::app {
 
+namespace {
+
+/// Whether a key, in full, is one of bounds, which need not be there: a part of it is called so.
+bool is_of_bounds(const std::string& key) { return ("." + key + ".").find(".bounds.") != std::string::npos; }
+
+}  // namespace
+
 bool Section::has(std::string_view key) const { return find(key) != nullptr; }
 
 double Section::checked(std::string_view key, const toml::node& node, const NumberRule& rule) const {
   const auto value = node.is_integer() ? std::optional(double(**node.as_integer())) : node.value<double>();
   if (!node.is_number() || !value) fail(key, fmt::format("expected a number, got {}", type_name(node)));
-  if (!std::isfinite(*value))
-    fail(key, fmt::format("must be finite, got {}{}", *value,
-                          std::isinf(*value) ? "; for no bound leave it out, or give one that is never reached" : ""));
+  if (!std::isfinite(*value)) {
+    const bool is_no_bound = std::isinf(*value) && is_of_bounds(full(key));
+    fail(key,
+         fmt::format("must be finite, got {}{}", *value,
+                     is_no_bound ? "; for no bound leave it out: { min = ... } or { max = ... } bounds one side" : ""));
+  }
   if (!rule.holds(*value)) fail(key, fmt::format("must be {}, got {}", rule.words, *value));
   return *value;
 }

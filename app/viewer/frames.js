@@ -14,6 +14,13 @@ export function rowAt(time, t) {
   return low + (t - time[low]) / (time[high] - time[low]);
 }
 
+/** The same of what is constant along arrows: on the way to a row, the number there. */
+export function stepReader(run, coordinate) {
+  const values = run.columns[coordinate];
+  if (!values) throw new Error(`no recorded column "${coordinate}"`);
+  return (row) => values[Math.ceil(row)] ?? values[Math.ceil(row) + 1] ?? 0;
+}
+
 /** A function of the (fractional) row: a constant, or a recorded column. Arrows have no row at the first node: the next. */
 export function reader(run, coordinate) {
   if (typeof coordinate === "number") return () => coordinate;

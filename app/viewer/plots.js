@@ -2,7 +2,7 @@
 import { Chart, Legend, LinearScale, LineElement, PointElement, ScatterController, Title } from "chart.js";
 
 import { happened, marksOn, sections } from "./events.js";
-import { reader } from "./frames.js";
+import { reader, stepReader } from "./frames.js";
 
 Chart.register(Legend, LinearScale, LineElement, PointElement, ScatterController, Title);
 
@@ -20,6 +20,20 @@ export function tickLabel(value, _, ticks) {
 /** What is shown of an axis: the column less an offset, near which all of its numbers lie, or 0. */
 const less = (label, offset) => (offset === 0 ? label : `${label} ${offset > 0 ? "-" : "+"} ${Math.abs(offset)}`);
 
+/** Bands behind the curves: the stretches of the x axis where an inequality acts. */
+const shading = (bands) => ({
+  id: "bands",
+  beforeDatasetsDraw({ ctx, chartArea, scales }) {
+    ctx.save();
+    ctx.fillStyle = "#f6ead0";
+    for (const [from, to] of bands) {
+      const left = scales.x.getPixelForValue(from);
+      ctx.fillRect(left, chartArea.top, scales.x.getPixelForValue(to) - left, chartArea.bottom - chartArea.top);
+    }
+    ctx.restore();
+  },
+});
+
 /** A frame for a chart, with its canvas. */
 function framed(parent) {
   const frame = document.createElement("div");
@@ -30,7 +44,7 @@ function framed(parent) {
   return { frame, canvas };
 }
 
-function scatter(canvas, datasets, { title, x_label, y_label, x_offset = 0, y_offset = 0 }, legend) {
+function scatter(canvas, datasets, { title, x_label, y_label, x_offset = 0, y_offset = 0, bands = [] }, legend) {
   const axis = (label, offset) => ({
     type: "linear",
     title: { display: true, text: less(label, offset) },
@@ -39,6 +53,7 @@ function scatter(canvas, datasets, { title, x_label, y_label, x_offset = 0, y_of
   return new Chart(canvas, {
     type: "scatter",
     data: { datasets },
+    plugins: [shading(bands)],
     options: {
       animation: false,
       maintainAspectRatio: false,
@@ -56,31 +71,43 @@ class Plot {
     this.cursor = document.createElement("canvas");
     this.cursor.className = "cursor";
     frame.append(this.cursor);
-    const { x_offset = 0, y_offset = 0 } = panel;
+    const { x_offset = 0, y_offset = 0, steps = false, levels = [] } = panel;
     const x = run.columns[panel.x];
     const readX = reader(run, panel.x);
     this.x = (row) => readX(row) - x_offset;
     this.curves = panel.curves.map((curve) => {
-      const readY = reader(run, curve);
+      const readY = (steps ? stepReader : reader)(run, curve);
       return (row) => readY(row) - y_offset;
     });
     const shown = (xs, y) => (xs === null || y === null ? [] : [{ x: xs - x_offset, y: y - y_offset }]);
     const curves = panel.curves.map((curve, i) => ({
       label: curve,
-      data: run.columns[curve].flatMap((y, row) => shown(x[row], y)),
+      data: run.columns[curve].flatMap((y, row, all) => shown(x[row], steps ? y ?? all[row + 1] ?? null : y)),
       showLine: true,
+      stepped: steps ? "after" : false,
       pointRadius: 0,
       borderWidth: 1.5,
       borderColor: palette[i % palette.length],
       backgroundColor: palette[i % palette.length],
     }));
+    const count = curves.length;
+    for (const { value, from, to } of levels)
+      curves.push({
+        label: "bound",
+        data: [{ x: from - x_offset, y: value - y_offset }, { x: to - x_offset, y: value - y_offset }],
+        showLine: true,
+        pointRadius: 0,
+        borderWidth: 1,
+        borderDash: [4, 4],
+        borderColor: "#8a94a6",
+      });
     const marks = marksOn(rows, panel);
     if (marks.length > 0)
       curves.push({ label: "events", data: marks, pointRadius: 3, borderColor: "#1c2330", backgroundColor: "transparent" });
     this.chart = scatter(canvas, curves, panel, {
-      display: curves.length > 1,
+      display: count > 1 || marks.length > 0,
       position: "bottom",
-      labels: { boxWidth: 12 },
+      labels: { boxWidth: 12, filter: ({ text }) => text !== "bound" },
     });
     if (panel.equal_axes) this.equalise();
   }

@@ -14,6 +14,7 @@ function fillIn() {
   element("status").textContent = `${run.status}, ${run.steps} steps${run.message ? `: ${run.message}` : ""}`;
   element("status").classList.toggle("failed", run.status !== "converged");
   const rows = element("ledger").querySelector("tbody");
+  element("ledger").querySelector("table").hidden = run.ledger.length === 0;
   for (const { name, promise, drift, relative_drift, verdict } of run.ledger) {
     const row = rows.insertRow();
     const short = (x) => (x === null ? "not a number" : x.toExponential(2));

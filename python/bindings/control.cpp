@@ -6,6 +6,7 @@
 #include "scene.hpp"
 
 #include <control/control_files.hpp>
+#include <control/results/row_words.hpp>
 #include <control/scene_loop.hpp>
 #include <families/family.hpp>
 
@@ -79,6 +80,12 @@ py::array table(const std::vector<std::vector<double>>& rows) {
   return owned(std::move(out));
 }
 
+std::vector<std::string> of_costates(const ControlResult& found, std::string app::CostateColumn::*what) {
+  std::vector<std::string> out;
+  for (const app::CostateColumn& each : app::costate_columns(found)) out.push_back(each.*what);
+  return out;
+}
+
 }  // namespace
 
 void bind_control(py::module_& module) {
@@ -88,7 +95,15 @@ void bind_control(py::module_& module) {
       .def_readonly("problem", &R::problem, "Its name.")
       .def_readonly("groupoid", &R::groupoid, "The groupoid of its arrows.")
       .def_readonly("state_names", &R::states, "Of the columns of `states`.")
+      .def_readonly("state_units", &R::state_units, "Of the same.")
       .def_readonly("control_names", &R::controls, "Of the columns of `controls`.")
+      .def_readonly("control_units", &R::control_units, "Of the same.")
+      .def_property_readonly(
+          "costate_names", [](const R& r) { return of_costates(r, &app::CostateColumn::name); },
+          "Of the columns of `costates`, as in trajectory.csv.")
+      .def_property_readonly(
+          "costate_units", [](const R& r) { return of_costates(r, &app::CostateColumn::unit); },
+          "Of the same: that of the cost per unit of the coordinate.")
       .def_property_readonly(
           "status", [](const R& r) { return std::string(to_string(r.report.status)); }, "converged, or why not.")
       .def_property_readonly(
@@ -123,7 +138,7 @@ void bind_control(py::module_& module) {
           "controls", [](const R& r) { return table(r.control_rows); }, "Of the arrows, (N, controls).")
       .def_property_readonly(
           "costates", [](const R& r) { return table(r.costate_rows); },
-          "Of the arrows: the multipliers of their equations, (N, equations).")
+          "Of the arrows: the multipliers of their equations and, behind them, of conditions on nodes, (N, columns).")
       .def_property_readonly(
           "summary", [](const R& r) { return app::control_json(r).dump(2); },
           "JSON, as lagroid control --json prints it.")

@@ -114,26 +114,6 @@ void add_events(const H5::H5File& out, const EventTable& events) {
     set_attribute(state, components_attribute(part), labels[part]);
 }
 
-void write_trajectory(const RunResult& result, const fs::path& file) {
-  write_hdf5(file, [&](const H5::H5File& out) {
-    set_attribute(out, "system", result.system);
-    set_attribute(out, "status", result.status);
-    set_attribute(out, "generator", "lagroid");
-    for (const auto& [name, value] : result.trajectory.conventions) set_attribute(out, "convention: " + name, value);
-    set_attribute(add_dataset(out, "time", result.trajectory.time, 1), "unit", "s");
-    for (const auto& s : result.trajectory.series) {
-      const H5::DataSet set = add_dataset(out, s.name, s.values, s.width());
-      set_attribute(set, "unit", s.unit);
-      set_attribute(set, "meaning", s.meaning);
-      const auto labels = joined_in_parts(s.components);
-      for (std::size_t part = 0; part < labels.size(); ++part)
-        set_attribute(set, components_attribute(part), labels[part]);
-      set_attribute(set, "rows", s.on_arrows ? "one per recorded arrow" : "one per recorded node");
-    }
-    if (!result.events.watched.empty()) add_events(out, result.events);
-  });
-}
-
 bool is_for_gnuplot(const Trajectory& trajectory) {
   std::size_t columns = 0;
   for (const auto& s : trajectory.series) columns += s.width();
@@ -184,6 +164,26 @@ std::string section(const WatchedEvent& event) {
 }
 
 }  // namespace
+
+void write_trajectory(const RunResult& result, const fs::path& file) {
+  write_hdf5(file, [&](const H5::H5File& out) {
+    set_attribute(out, "system", result.system);
+    set_attribute(out, "status", result.status);
+    set_attribute(out, "generator", "lagroid");
+    for (const auto& [name, value] : result.trajectory.conventions) set_attribute(out, "convention: " + name, value);
+    set_attribute(add_dataset(out, "time", result.trajectory.time, 1), "unit", "s");
+    for (const auto& s : result.trajectory.series) {
+      const H5::DataSet set = add_dataset(out, s.name, s.values, s.width());
+      set_attribute(set, "unit", s.unit);
+      set_attribute(set, "meaning", s.meaning);
+      const auto labels = joined_in_parts(s.components);
+      for (std::size_t part = 0; part < labels.size(); ++part)
+        set_attribute(set, components_attribute(part), labels[part]);
+      set_attribute(set, "rows", s.on_arrows ? "one per recorded arrow" : "one per recorded node");
+    }
+    if (!result.events.watched.empty()) add_events(out, result.events);
+  });
+}
 
 std::string plot_script(const std::vector<Panel>& panels, const EventTable& events, bool by_name) {
   const std::string data = by_name ? "trajectory.csv" : "plot.csv";

@@ -30,6 +30,9 @@ OutputFolder folder_of_run(const std::filesystem::path& folder);
 /// The same for a result whose scene is not known: it may be written again, another one may not.
 OutputFolder folder_for_result(const std::filesystem::path& folder, const RunResult& result);
 
+/// The columns of a result, with what happened in it, as HDF5. Throws OutputError.
+void write_trajectory(const RunResult& result, const std::filesystem::path& file);
+
 /// Writes trajectory.h5, trajectory.csv, events.csv where events were watched for, summary.json, summary.txt, plot.gp,
 /// plot.svg and plot.png into `folder`
 /// (`write_and_draw`), which the caller holds. Returns the files written; a missing or failing gnuplot, or a signal

@@ -46,7 +46,7 @@ const std::vector<KindOfOutput>& kinds() {
       {OutputKind::run, "run", "a run", {"checkpoint/scene.toml", "trajectory.csv", "trajectory.h5"}},
       {OutputKind::sweep, "sweep", "a sweep", {"sweep.cbor", "sweep.h5"}},
       {OutputKind::study, "study", "a study", {"study.json"}},
-      {OutputKind::optimum, "optimum", "an optimisation", {"result.h5"}},
+      {OutputKind::optimum, "optimum", "an optimisation", {"result.h5", "control.h5"}},
       {OutputKind::model, "model", "a learned model", {"model.json"}},
       {OutputKind::report, "report", "a report", {"figures.gp"}},
       {OutputKind::data, "data", "data", {}}};

@@ -132,6 +132,9 @@ std::string kind(const StationaryPath& path) {
 
 }  // namespace
 
+nlohmann::ordered_json panel_json(const Panel& panel) { return json(panel); }
+nlohmann::ordered_json shape_json(const Shape& shape) { return json(shape); }
+
 std::string text_report(const RunResult& r) {
   std::string out;
   const auto line = [&](const std::string& text) { out += text + "\n"; };

@@ -22,6 +22,10 @@ std::string json_report(const RunResult& result);
 /// The plot panels in such a summary. Throws nlohmann::json::exception where there are none.
 std::vector<Panel> panels_of(const nlohmann::ordered_json& summary);
 
+/// A panel, and a shape, as they stand in it.
+nlohmann::ordered_json panel_json(const Panel& panel);
+nlohmann::ordered_json shape_json(const Shape& shape);
+
 /// What was watched for in such a summary, without what happened; nothing where there is none. Throws as `panels_of`.
 EventTable events_of(const nlohmann::ordered_json& summary);
 

@@ -176,6 +176,30 @@ template <class Sys> struct PhaseDurationBound {
   double value(const ControlPhase<Sys>& phase, double duration) const { return sign * std::log(duration / of(phase)); }
 };
 
+/// Those that hold in one phase at least: of each control the upper, then the lower.
+template <class Sys>
+std::vector<PhaseControlBound<Sys>> control_bounds_of(const std::vector<ControlPhase<Sys>>& phases) {
+  std::vector<PhaseControlBound<Sys>> out;
+  for (int i = 0; i < Sys::controls; ++i)
+    for (const double sign : {1.0, -1.0}) {
+      const PhaseControlBound<Sys> bound{i, sign};
+      if (std::any_of(phases.begin(), phases.end(), [&](const auto& phase) { return bound.holds(phase); }))
+        out.push_back(bound);
+    }
+  return out;
+}
+/// The same of durations: longest, then shortest.
+template <class Sys>
+std::vector<PhaseDurationBound<Sys>> duration_bounds_of(const std::vector<ControlPhase<Sys>>& phases) {
+  std::vector<PhaseDurationBound<Sys>> out;
+  for (const double sign : {1.0, -1.0}) {
+    const PhaseDurationBound<Sys> bound{sign};
+    if (std::any_of(phases.begin(), phases.end(), [&](const auto& phase) { return bound.holds(phase); }))
+      out.push_back(bound);
+  }
+  return out;
+}
+
 /// What is to be solved: a system between two ends, in one phase or several.
 template <class Sys> struct ControlTask {
   using G = typename Sys::GroupoidType;

@@ -20,6 +20,7 @@
 /// the gradient (KktRounding) is no violation and no residual, whatever the units.
 
 #include <lagroid/solvers/control/optimality/kkt_residual.hpp>
+#include <lagroid/solvers/control/optimality/repeated_constraints.hpp>
 #include <lagroid/solvers/control/stage_kkt.hpp>
 
 #include <functional>
@@ -35,6 +36,7 @@ enum class ControlStatus {
   stagnated,   ///< of a trajectory that satisfies the constraints, no step is better: rounding, or a degenerate minimum
   not_converged,  ///< the iterations are used up
   singular,       ///< no shift of the matrix gave a direction
+  redundant,      ///< it failed, and constraints repeat each other (`repeated`): leave these out first
   not_finite,     ///< a value at the start
   interrupted     ///< `keep_going` said so
 };
@@ -51,6 +53,8 @@ constexpr std::string_view to_string(ControlStatus status) {
       return "not_converged";
     case ControlStatus::singular:
       return "singular";
+    case ControlStatus::redundant:
+      return "redundant";
     case ControlStatus::not_finite:
       return "not_finite";
     case ControlStatus::interrupted:
@@ -84,12 +88,13 @@ struct ControlReport {
   int factorisations = 0;
   double cost = 0;
   // The KKT residual as it stands, not scaled (KktResidual).
-  double stationarity = 0;                 ///< largest component of the Lagrangian's gradient
-  double violation = 0;                    ///< largest of |phi| and of gamma's positive part
-  double complementarity = 0;              ///< largest |z_i gamma_i|
-  bool is_strict_minimum = false;          ///< the matrix has the inertia of a strict local minimum, without a shift
-  std::vector<ConstraintViolation> worst;  ///< of a trajectory that is infeasible, the largest five
-  std::string message;                     ///< where it is not converged: what to do
+  double stationarity = 0;                   ///< largest component of the Lagrangian's gradient
+  double violation = 0;                      ///< largest of |phi| and of gamma's positive part
+  double complementarity = 0;                ///< largest |z_i gamma_i|
+  bool is_strict_minimum = false;            ///< the matrix has the inertia of a strict local minimum, without a shift
+  std::vector<ConstraintViolation> worst;    ///< of a trajectory that is infeasible, the largest five
+  std::vector<RepeatedConstraint> repeated;  ///< converged or not: what could be left out (repeated_constraints.hpp)
+  std::string message;                       ///< where it is not converged: what to do
 
   bool converged() const { return status == ControlStatus::converged; }
   /// Whether a trajectory that did not converge satisfies its constraints so well that it may be followed.

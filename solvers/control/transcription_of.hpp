@@ -39,15 +39,8 @@ template <class Sys> class TranscriptionOf final : public Transcription {
         free_end_(task.free_end.begin(), task.free_end.end()) {
     for (bool free : free_start_) start_is_free_ = start_is_free_ || free;
     for (bool free : free_end_) end_is_fixed_ = end_is_fixed_ && !free;
-    for (int i = 0; i < Sys::controls; ++i)
-      for (const double sign : {1.0, -1.0}) {
-        const auto is_bounded = [&](const auto& phase) { return PhaseControlBound<Sys>{i, sign}.holds(phase); };
-        if (std::any_of(phases_.begin(), phases_.end(), is_bounded)) bounds_.push_back({i, sign});
-      }
-    for (const double sign : {1.0, -1.0}) {
-      const auto is_bounded = [&](const auto& phase) { return PhaseDurationBound<Sys>{sign}.holds(phase); };
-      if (std::any_of(phases_.begin(), phases_.end(), is_bounded)) duration_bounds_.push_back({sign});
-    }
+    bounds_ = control_bounds_of(phases_);
+    duration_bounds_ = duration_bounds_of(phases_);
     sizes_.node = n;
     sizes_.control = Sys::controls;
     sizes_.inequality = before_bounds() + int(bounds_.size());

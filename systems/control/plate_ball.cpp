@@ -80,44 +80,6 @@ double PlateBall::energy(const Step<PlateBall>& step, double over) const {
   return 0.5 * velocity.squaredNorm() + plate_rate * (l(0) * middle(0) - l(1) * middle(1)) - spin * l(2);
 }
 
-namespace {
-
-/// The velocity of the contact point and the angular velocity of the continuous extremal at (x, y), p = (px, py), M.
-struct Rolling {
-  Vector<double, 2> velocity;
-  Vector<double, 3> omega;
-
-  Rolling(const PlateBall& system, const Vector<double, 2>& q, const Vector<double, 2>& p, const Vector<double, 3>& m)
-      : Rolling(system, q, p, m, system.spin) {}
-  /// Its rate of change: the same linear map of the rates of q, p and M, without the constant spin.
-  static Rolling rate(const PlateBall& system, const Vector<double, 2>& q, const Vector<double, 2>& p,
-                      const Vector<double, 3>& m) {
-    return {system, q, p, m, 0};
-  }
-
- private:
-  Rolling(const PlateBall& system, const Vector<double, 2>& q, const Vector<double, 2>& p, const Vector<double, 3>& m,
-          double spin)
-      : velocity(p(0) + m(1) / system.radius, p(1) - m(0) / system.radius),
-        omega((system.plate_rate * q(0) - velocity(1)) / system.radius,
-              (velocity(0) + system.plate_rate * q(1)) / system.radius, spin) {}
-};
-
-/// px' = -Omega l1, py' = Omega l2.
-Vector<double, 2> force(const PlateBall& system, const Vector<double, 3>& m) {
-  return Vector<double, 2>(-m(0), -m(1)) * (system.plate_rate / system.radius);
-}
-
-}  // namespace
-
-double PlateBall::time_scale_rate(const State<GroupoidType>& s) const {
-  const Vector<double, 3> m = s.momentum.tail<3>();
-  const Rolling now(*this, std::get<0>(s.object), s.momentum.head<2>(), m);
-  const auto rate = Rolling::rate(*this, now.velocity, force(*this, m), m.cross(now.omega));
-  const double size = now.omega.squaredNorm();
-  return size > 0 ? -now.omega.dot(rate.omega) / size : 0;
-}
-
 State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& start, Matrix<double, 3, 3>& attitude,
                                                     double t) const {
   Eigen::VectorXd y(16);
@@ -125,9 +87,9 @@ State<PlateBall::GroupoidType> PlateBall::reference(const State<GroupoidType>& s
   y = integrate_reference(
       [this](const Eigen::VectorXd& at, Eigen::VectorXd& out) {
         const Vector<double, 3> m = at.segment<3>(4);
-        const Rolling now(*this, at.head<2>(), at.segment<2>(2), m);
+        const Rolling<double> now = rolling<double>(at.head<2>(), at.segment<2>(2), m, spin);
         out.head<2>() = now.velocity;
-        out.segment<2>(2) = force(*this, m);
+        out.segment<2>(2) = force(m);
         out.segment<3>(4) = m.cross(now.omega);
         out.tail<9>() = (at.tail<9>().reshaped(3, 3) * SO3::hat(now.omega)).reshaped();
       },

@@ -97,8 +97,35 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// lambda = (M1/r, -M2/r, -M3), u = px - l2 - h Omega l1/2, v = py - l1 + h Omega l2/2: exact as h -> 0.
   Step<PlateBall> first_guess(const State<GroupoidType>& s) const;
 
+  /// The velocity of the contact point and the angular velocity of the continuous extremal at q, p = (px, py) and M:
+  /// linear in these and the spin, so that their rates are the same map of the rates of q, p and M, without spin.
+  template <class S> struct Rolling {
+    Vector<S, 2> velocity;
+    Vector<S, 3> omega;
+  };
+  template <class S>
+  Rolling<S> rolling(const Vector<S, 2>& q, const Vector<S, 2>& p, const Vector<S, 3>& m,
+                     const ParameterScalar<S>& about_vertical) const {
+    const auto r = varied<S>(radius);
+    const auto rate = varied<S>(plate_rate);
+    const Vector<S, 2> velocity(p(0) + m(1) / r, p(1) - m(0) / r);
+    return {velocity, {(q(0) * rate - velocity(1)) / r, (velocity(0) + q(1) * rate) / r, constant<S>(about_vertical)}};
+  }
+  /// px' = -Omega l1, py' = Omega l2.
+  template <class S> Vector<S, 2> force(const Vector<S, 3>& m) const {
+    return Vector<S, 2>(-m(0), -m(1)) * constant<S>(varied<S>(plate_rate) / varied<S>(radius));
+  }
+
   /// Of sigma = 1 / |omega|, omega the angular velocity of the continuous extremal.
-  double time_scale_rate(const State<GroupoidType>& s) const;
+  template <class S> S time_scale_rate(const Object<S>& object, const Vector<S, 5>& mu) const {
+    const Vector<S, 3> m = mu.template tail<3>();
+    const Rolling<S> now = rolling<S>(std::get<0>(object), mu.template head<2>(), m, varied<S>(spin));
+    const Rolling<S> rate = rolling<S>(now.velocity, force<S>(m), m.cross(now.omega), 0.0);
+    const S size = now.omega.squaredNorm();
+    if (!(size > S(0.0))) return S(0.0);
+    return -now.omega.dot(rate.omega) / size;
+  }
+  double time_scale_rate(const State<GroupoidType>& s) const { return time_scale_rate(s.object, s.momentum); }
 
   /// Why no trajectory of this system exists, or nothing: |c h| at or beyond the range of w3 in the chosen form, or
   /// parameters that make no sense.

@@ -5,11 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace lagroid::app {
@@ -24,7 +27,7 @@ using multibody::SpeedLimit;
 using multibody::Vec;
 
 const KeyOf<Text> effect_key{"effect", {}, "", "name of the effect whose strength is a control u"};
-const KeyOf<NumberArray> bounds_key{"bounds", {2}, "", "least and largest u", {}, "none"};
+const KeyOf<Either> bounds_key = range_key("bounds", "", "least and largest u");
 const KeyOf<Number> weight_key{"weight", {nonnegative}, "", "w of the cost w u^2", 1.0};
 
 const KeyOf<NumberArray> point_key =
@@ -52,6 +55,7 @@ const KeyOf<NumberArray> axis_key = vector_key("axis", "", "of the cone, in spac
 const KeyOf<Number> at_least_key{"at_least", {an_angle}, "rad", "of direction from axis: outside of a cone", {}, "any"};
 const KeyOf<Number> at_most_key{"at_most", {an_angle}, "rad", "of direction from axis: inside of a cone", {}, "any"};
 const KeyOf<Number> speed_key{"speed", {positive}, "m/s", "of its centre, at most", {}, "any"};
+const KeyOf<Text> name_key{"name", {}, "", "what messages call it", {}, "by its kind, its body and where it is"};
 const KeyOf<Number> angular_speed_key{"angular_speed", {positive}, "rad/s", "of its turning, at most", {}, "any"};
 
 /// What [[constraint]] asks of a body at every node.
@@ -62,15 +66,15 @@ struct LimitKind {
 };
 const std::vector<LimitKind>& limit_kinds() {
   static const std::vector<LimitKind> all{
-      {"sphere", "a point keeps out of a sphere", {body_key, kept_point, centre_key, radius_key}},
+      {"sphere", "a point keeps out of a sphere", {name_key, body_key, kept_point, centre_key, radius_key}},
       {"disk",
        "a point keeps out of a disk in the plane of x and y, a cylinder along z",
-       {body_key, kept_point, centre_key, radius_key}},
-      {"plane", "a point stays on one side of a plane", {body_key, kept_point, on_plane_key, normal_key}},
+       {name_key, body_key, kept_point, centre_key, radius_key}},
+      {"plane", "a point stays on one side of a plane", {name_key, body_key, kept_point, on_plane_key, normal_key}},
       {"cone",
        "a direction of a body that turns in space keeps off another, or near it",
-       {body_key, direction_key, axis_key, at_least_key, at_most_key}},
-      {"speed", "a body does not move or turn faster", {body_key, speed_key, angular_speed_key}}};
+       {name_key, body_key, direction_key, axis_key, at_least_key, at_most_key}},
+      {"speed", "a body does not move or turn faster", {name_key, body_key, speed_key, angular_speed_key}}};
   return all;
 }
 KeyOf<OneOf> kind_key(const std::vector<LimitKind>& kinds) {
@@ -110,6 +114,11 @@ struct EndOf {
   }
 };
 
+/// "(1, 0, 0.5)".
+std::string numbers_of(const Vec& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v(0), v(1), v(2)); }
+std::string exactly(const Vec& v) { return fmt::format("{} {} {}", v(0), v(1), v(2)); }
+constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+
 /// Reads [[end]] and [[constraint]], of points that are added to the bodies.
 class Reader {
  public:
@@ -124,7 +133,10 @@ class Reader {
       const Attachment point = point_of(table, point_key, body);
       if (body.linear < 0 && point.arm.isZero(0))
         table.fail("position", fmt::format("\"{}\" is held at its pivot: give a point of it by at", body.name));
-      for (int i = 0; i < int(place.size()); ++i) end.places.push_back({point.site, i, place[std::size_t(i)]});
+      for (int i = 0; i < int(place.size()); ++i) {
+        end.places.push_back({point.site, i, place[std::size_t(i)]});
+        out_.end.places.push_back(fmt::format("position of \"{}\" along {}", body.name, axes[std::size_t(i)]));
+      }
       given.arm = point.arm;
       given.place = body.place;  // a planar body keeps its height
       std::copy(place.begin(), place.end(), given.place->begin());
@@ -137,18 +149,23 @@ class Reader {
                    fmt::format("\"{}\" does not turn in space{}", body.name, body.planar ? ": give its angle" : ""));
       const auto q = read_key_or(table, attitude_key, {});
       end.turns.push_back({body.body.attitude, {q[0], q[1], q[2], q[3]}});
+      out_.end.turns.push_back(fmt::format("attitude of \"{}\"", body.name));
       given.attitude = SO3::from_quaternion(end.turns.back().value);
     }
     if (table.has(angle_key.name)) {
       if (!body.planar) table.fail("angle", fmt::format("\"{}\" is no planar body", body.name));
       end.places.push_back({bodies_.scene.planar_place(body.body), 2, read_key_or(table, angle_key, 0)});
+      out_.end.places.push_back(fmt::format("angle of \"{}\"", body.name));
       given.attitude = SO3::exp(Vec(0, 0, end.places.back().value));
     }
     const bool at_rest = read_key(table, at_rest_key);
     if (table.has(velocity_key.name) || (at_rest && body.linear >= 0)) {
       if (body.linear < 0) table.fail("velocity", fmt::format("\"{}\" is held at its pivot", body.name));
       const auto v = given_or_zero(table, velocity_key, body.planar ? 2 : 3, at_rest);
-      for (int i = 0; i < int(v.size()); ++i) end.velocities.push_back({body.linear, i, v[std::size_t(i)]});
+      for (int i = 0; i < int(v.size()); ++i) {
+        end.velocities.push_back({body.linear, i, v[std::size_t(i)]});
+        out_.end.velocities.push_back(fmt::format("velocity of \"{}\" along {}", body.name, axes[std::size_t(i)]));
+      }
     }
     const bool turns = body.planar || body.body.attitude.index >= 0;
     if (!table.has(turning_key.name) && !(at_rest && turns)) return;
@@ -157,10 +174,13 @@ class Reader {
     for (int i = 0; i < int(w.size()); ++i) {
       if (body.planar) end.velocities.push_back({body.linear, 2, w[0]});
       if (!body.planar) end.turnings.push_back({body.body.attitude, i, w[std::size_t(i)]});
+      (body.planar ? out_.end.velocities : out_.end.turnings)
+          .push_back(fmt::format("angular velocity of \"{}\"", body.name));
     }
   }
 
   void read_constraint(const Section& table) {
+    ++constraints_;
     const std::string kind = read_key(table, kind_key(limit_kinds()));
     const NamedBody& body = bodies_.named(table, body_key.name, read_key(table, body_key));
     if (kind == "cone") return read_cone(table, body);
@@ -179,13 +199,20 @@ class Reader {
     keep_out.kind = kind;
     const Attachment point = point_of(table, kept_point, body);
     keep_out.site = point.site;
+    const std::string of = point.arm.isZero(0) ? body.name : fmt::format("{} at {}", body.name, numbers_of(point.arm));
     if (keep_out.kind == KeepOut::Kind::plane) {
       keep_out.centre = vector(table, on_plane_key);
       keep_out.normal = unit(table, normal_key);
+      keep_out.name = fmt::format("plane through {} for {}", numbers_of(keep_out.centre), of);
     } else {
       keep_out.centre = vector(table, centre_key);
       keep_out.radius = read_key(table, radius_key);
+      keep_out.name = fmt::format("{} about {} for {}", kind == KeepOut::Kind::disk ? "disk" : "sphere",
+                                  numbers_of(keep_out.centre), of);
     }
+    keep_out.name = read_key_or(table, name_key, keep_out.name);
+    require_new(table, fmt::format("{} {} {} {} {} {}", int(kind), body.name, exactly(point.arm),
+                                   exactly(keep_out.centre), keep_out.radius, exactly(keep_out.normal)));
     if (keep_out.value(point.place) > multibody::limit_rounding)
       table.fail("", fmt::format("\"{}\" is inside at the start", body.name));
     for (const EndOf& end : ends_)
@@ -211,6 +238,10 @@ class Reader {
       if (!table.has(key.name)) return;
       cone.angle = angle;
       cone.side = side;
+      cone.name = read_key_or(table, name_key, fmt::format("cone about {} for {}", numbers_of(cone.axis), body.name));
+      if (table.has(at_least_key.name) && table.has(at_most_key.name)) cone.name += ", " + key.name;
+      require_new(table, fmt::format("cone {} {} {} {} {}", body.name, exactly(cone.direction), exactly(cone.axis),
+                                     key.name, angle));
       const Vec seen = body.attitude * cone.direction;
       if (cone.value(body.attitude) > multibody::limit_rounding)
         table.fail(key.name, fmt::format("\"{}\" has its direction {:.4g} rad from the axis at the start", body.name,
@@ -230,6 +261,7 @@ class Reader {
       limit.linear = body.linear;
       if (body.planar) limit.axes = {0, 1};
       limit.most = largest(table, speed_key, body, body.velocity.norm(), "m/s");
+      name_speed(table, speed_key, body, "speed limit", limit);
     }
     if (!table.has(angular_speed_key.name)) return;
     const bool turns = body.planar || body.body.attitude.index >= 0;
@@ -242,6 +274,21 @@ class Reader {
       limit.attitude = body.body.attitude;
     }
     limit.most = largest(table, angular_speed_key, body, body.angular_velocity.norm(), "rad/s");
+    name_speed(table, angular_speed_key, body, "limit of angular speed", limit);
+  }
+  void name_speed(const Section& table, const KeyOf<Number>& key, const NamedBody& body, const char* what,
+                  SpeedLimit& limit) {
+    limit.name = fmt::format("{} of {}", what, body.name);
+    if (table.has(name_key.name)) {
+      limit.name = read_key_or(table, name_key, {});
+      if (table.has(speed_key.name) && table.has(angular_speed_key.name)) limit.name += ", " + key.name;
+    }
+    require_new(table, fmt::format("{} {} {}", key.name, body.name, limit.most));
+  }
+  /// Of what a constraint says; an earlier one that says it, too, makes multipliers ambiguous.
+  void require_new(const Section& table, const std::string& says) {
+    const auto [before, is_new] = said_.try_emplace(says, constraints_);
+    if (!is_new) table.fail("", fmt::format("says what constraint.{} says: leave one of them out", before->second));
   }
 
   /// A largest speed, which the start keeps to.
@@ -278,6 +325,8 @@ class Reader {
   BodiesControl& out_;
   std::vector<PointOf> points_;
   std::vector<EndOf> ends_;
+  int constraints_ = -1;             // the number of the one that is read
+  std::map<std::string, int> said_;  // what they say, and which says it first
 };
 
 }  // namespace
@@ -301,11 +350,11 @@ BodiesControl read_controlled_bodies(const Section& scene) {
     actuator.effect = read_key(table, effect_key);
     actuator.weight = read_key(table, weight_key);
     if (!table.has(bounds_key.name)) continue;
-    const auto range = read_key_or(table, bounds_key, {});
-    if (!(range[0] < range[1]))
-      table.fail("bounds", fmt::format("{} is not below {}; give the lower bound first", range[0], range[1]));
-    actuator.lower = range[0];
-    actuator.upper = range[1];
+    std::tie(actuator.lower, actuator.upper) =
+        read_range(table, bounds_key.name, any_number, {actuator.lower, actuator.upper});
+    if (!(actuator.lower < actuator.upper))
+      table.fail("bounds",
+                 fmt::format("{} is not below {}; give the lower bound first", actuator.lower, actuator.upper));
   }
   const Section horizon = scene.section("horizon", "duration and stages");
   out.task.duration = read_key(horizon, duration_key);

@@ -11,6 +11,7 @@
 
 #include <lagroid/systems/multibody/control/scene_search.hpp>
 
+#include <string>
 #include <vector>
 
 namespace lagroid::app {
@@ -20,6 +21,11 @@ struct BodiesControl {
   multibody::SceneSearchOptions search;
   ControlMethod method = ControlMethod::interior_point;
   std::vector<NamedBody> bodies;
+  /// What the parts of task.end ask for, one for each: of turns one for all three numbers.
+  struct EndWords {
+    std::vector<std::string> places, turns, velocities, turnings;
+  };
+  EndWords end;
 };
 
 /// Throws SceneError.

@@ -1,4 +1,6 @@
+#include "../../bodies/scene_picture.hpp"
 #include "../../reading/kinds.hpp"
+#include "../../scenes/arrow_format.hpp"
 #include "../problems/problems.hpp"
 #include "../scene_loop.hpp"
 #include "bodies_keys.hpp"
@@ -11,7 +13,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace lagroid::app {
 
@@ -46,17 +53,28 @@ class Seen {
  public:
   Seen(ControlledScene& scene, const std::vector<NamedBody>& bodies) : scene_(scene), bodies_(bodies) {}
 
-  std::vector<std::string> names() const {
-    std::vector<std::string> out;
+  void name(std::vector<std::string>& names, std::vector<std::string>& units) const {
     for (const NamedBody& body : bodies_) {
-      const auto add = [&](std::initializer_list<const char*> of) {
-        for (const char* each : of) out.push_back(fmt::format("{}.{}", body.name, each));
+      const auto add = [&](std::initializer_list<const char*> of, const char* unit) {
+        for (const char* each : of) {
+          names.push_back(column(body.name, each));
+          units.emplace_back(unit);
+        }
       };
-      if (body.planar) add({"x", "y", "angle", "vx", "vy", "rate"});
-      if (!body.planar && body.linear >= 0) add({"x", "y", "z", "vx", "vy", "vz"});
-      if (body.body.attitude.index >= 0) add({"rx", "ry", "rz", "wx", "wy", "wz"});
+      if (body.planar) {
+        add({"x", "y"}, "m");
+        add({"angle"}, "rad");
+        add({"vx", "vy"}, "m/s");
+        add({"rate"}, "rad/s");
+      } else if (body.linear >= 0) {
+        add({"x", "y", "z"}, "m");
+        add({"vx", "vy", "vz"}, "m/s");
+      }
+      if (body.body.attitude.index >= 0) {
+        add({"rx", "ry", "rz"}, "rad");
+        add({"wx", "wy", "wz"}, "rad/s");
+      }
     }
-    return out;
   }
   std::vector<double> row(const ControlledNode& node) {
     std::vector<double> out;
@@ -95,6 +113,97 @@ std::string groupoid_of(const std::vector<NamedBody>& bodies) {
   return fmt::format("{}", fmt::join(parts, " x "));
 }
 
+/// Of the scene's factors, each momentum at both ends of an arrow.
+std::vector<EquationName> equation_names(const ControlledScene& scene, const std::vector<NamedBody>& bodies) {
+  std::vector<std::string> momenta(std::size_t(scene.n()));
+  std::vector<std::string> units(momenta.size());
+  const auto name = [&](int factor, const NamedBody& body, const std::array<const char*, 3>& of, bool is_planar,
+                        const char* unit) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      momenta[std::size_t(3 * factor) + i] = column(body.name, of[i]);
+      units[std::size_t(3 * factor) + i] = is_planar && i == 2 ? "kg m^2/s" : unit;
+    }
+  };
+  for (const NamedBody& body : bodies) {
+    if (body.linear >= 0)
+      name(scene.motion().linear_place(body.linear), body, {"px", "py", body.planar ? "L" : "pz"}, body.planar,
+           "kg m/s");
+    if (body.body.attitude.index >= 0)
+      name(scene.linear() + scene.motion()(body.body.attitude).index, body, {"M1", "M2", "M3"}, false, "kg m^2/s");
+  }
+  std::vector<EquationName> out;
+  add_momentum_equations(momenta, units, out);
+  return out;
+}
+
+/// What the conditions on nodes say: joints at all, what is given at the last.
+std::vector<std::vector<std::string>> conditions_of(const ControlledScene& scene, const BodiesControl& read) {
+  std::vector<std::string> joints;
+  for (int row = 0; row < scene.joints(); ++row) joints.push_back(fmt::format("row {} of the joints", row + 1));
+  std::vector<std::string> all = joints;
+  const auto add = [&](const std::vector<std::string>& words, int times) {
+    for (const std::string& each : words)
+      for (int i = 0; i < times; ++i) all.push_back(each + " as given at the end");
+  };
+  add(read.end.places, 1);
+  add(read.end.turns, 3);
+  add(read.end.velocities, 1);
+  add(read.end.turnings, 1);
+  std::vector<std::string> at_end;
+  for (const int row : scene.end_rows()) at_end.push_back(all[std::size_t(row)]);
+  std::vector<std::vector<std::string>> out(std::size_t(read.task.stages), joints);
+  out.back() = std::move(at_end);
+  return out;
+}
+
+std::vector<std::string> inequality_names(const ControlledScene& scene) {
+  std::vector<std::string> out;
+  for (int i = 0; i < scene.limits().size(); ++i) out.push_back(scene.limits().name(i));
+  for (const multibody::Actuator& each : scene.task().actuators) {
+    if (std::isfinite(each.upper)) out.push_back("upper bound of " + each.effect);
+    if (std::isfinite(each.lower)) out.push_back("lower bound of " + each.effect);
+  }
+  return out;
+}
+
+/// What the bodies' shapes need beside their states: centres, attitudes as quaternions and the ends of lines.
+std::vector<Columns> seen_of(ControlledScene& scene, const SceneBodies& bodies,
+                             const std::vector<ControlledNode>& nodes) {
+  std::vector<Columns> out;
+  const auto add = [&](const std::string& name, std::vector<std::string> labels, const char* unit, const char* meaning,
+                       const auto& row) {
+    Columns& columns = out.emplace_back(Columns{name, std::move(labels), unit, meaning, false, {}});
+    for (const ControlledNode& node : nodes) {
+      const auto numbers = row(node);
+      columns.values.insert(columns.values.end(), numbers.begin(), numbers.end());
+    }
+  };
+  const auto add_point = [&](const std::string& name, multibody::Site site) {
+    add(name + ".place", columns(name, {"x", "y", "z"}), "m", "position in space",
+        [&scene, site](const ControlledNode& node) {
+          const Vec place = scene.forces(node)(site);
+          return std::array<double, 3>{place(0), place(1), place(2)};
+        });
+  };
+  for (const NamedBody& body : bodies.bodies) {
+    if (body.linear < 0) add_point(body.name, body.body.centre);
+    if (body.planar)
+      add(body.name + ".height", {column(body.name, "z")}, "m", "height, which it keeps",
+          [z = body.place(2)](const ControlledNode&) { return std::array<double, 1>{z}; });
+    if (body.body.attitude.index >= 0)
+      add(body.name + ".attitude", attitude_of(body.name), "1",
+          "rotation A from body to space, unit quaternion w, x, y, z",
+          [&scene, a = body.body.attitude](const ControlledNode& node) {
+            return quaternion_of(scene.forces(node)(a));
+          });
+  }
+  for (std::size_t k = 0; k < bodies.lines.size(); ++k)
+    for (const auto& [end, name] : {std::pair{&bodies.lines[k].from, "from"}, {&bodies.lines[k].to, "to"}})
+      if (bodies.lines[k].switched_by != 0 || (end->body && !end->arm.isZero(0)))
+        add_point(end_column(k, name), end->site);
+  return out;
+}
+
 std::vector<std::vector<double>> rows_of(const StageRows& of, long stages) {
   std::vector<std::vector<double>> out;
   for (long k = 0; k < stages; ++k) out.emplace_back(of[k], of[k] + of.length());
@@ -121,7 +230,7 @@ class ControlledBodies final : public ControlProblem {
     ControlResult out;
     out.problem = name();
     out.groupoid = groupoid_of(read.bodies);
-    out.states = seen.names();
+    seen.name(out.states, out.state_units);
     const long stages = best.path.stages();
     for (long k = 0; k <= stages; ++k) {
       out.times.push_back(double(k) * best.path.step);
@@ -129,6 +238,7 @@ class ControlledBodies final : public ControlProblem {
     }
     for (const multibody::Actuator& each : read.task.actuators) {
       out.controls.push_back(each.effect);
+      out.control_units.emplace_back("1");
       out.lower.push_back(each.lower);
       out.upper.push_back(each.upper);
     }
@@ -137,7 +247,12 @@ class ControlledBodies final : public ControlProblem {
     out.costate_rows = rows_of(best.costates, stages);
     out.inequality_rows = rows_of(best.inequality_multipliers, stages);
     out.by_ipopt = read.method == ControlMethod::ipopt;
-    out.equations = 2 * scene.n();
+    out.equations = equation_names(scene, read.bodies);
+    out.conditions = conditions_of(scene, read);
+    out.inequalities = inequality_names(scene);
+    const SceneBodies drawn = read_scene_bodies(text);
+    out.shapes = shapes_of(drawn, {});
+    out.seen = seen_of(scene, drawn, best.path.nodes);
     out.report = best.report;
     out.crossover = best.crossover;
     out.outcomes = found.outcomes;

@@ -6,7 +6,9 @@
 namespace lagroid::app {
 
 const ControlProblem& swing_up_problem() {
-  static const ControlProblemOf<SwingUp> problem("swing_up", "a pendulum that a torque swings up");
+  static const ControlProblemOf<SwingUp> problem(
+      "swing_up", "a pendulum that a torque swings up",
+      [](const SwingUp& pendulum) { return hanging(pendulum.length, "angle"); });
   return problem;
 }
 

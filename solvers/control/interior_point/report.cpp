@@ -17,10 +17,18 @@ void InteriorPoint::describe() {
   for (long k = 0; k < sizes_.stages; ++k) report_.cost += values_.cost[k][0];
 }
 
-void InteriorPoint::explain() {
-  if (report_.converged()) return;
-  report_.message = advice_of(report_.status, options_.max_iterations);
-  report_.worst = worst_violations(sizes_, values_, options_.tolerance);
+void InteriorPoint::explain() { explain_end(transcription_, values_, derivatives_, options_, report_); }
+
+void explain_end(const Transcription& transcription, const StageValues& values, const StageDerivatives& derivatives,
+                 const ControlOptions& options, ControlReport& report) {
+  // Rows that repeat each other leave the matrix without the inertia of a strict minimum: else nobody need ask.
+  if (!report.is_strict_minimum && report.status != ControlStatus::not_finite &&
+      report.status != ControlStatus::interrupted)
+    report.repeated = repeated_constraints(transcription, values, derivatives, options.tolerance);
+  if (report.converged()) return;
+  if (!report.repeated.empty()) report.status = ControlStatus::redundant;
+  report.message = advice_of(report.status, options.max_iterations);
+  report.worst = worst_violations(transcription.sizes(), values, options.tolerance);
 }
 
 std::string advice_of(ControlStatus status, int max_iterations) {
@@ -38,6 +46,8 @@ std::string advice_of(ControlStatus status, int max_iterations) {
                          max_iterations);
     case ControlStatus::singular:
       return "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
+    case ControlStatus::redundant:
+      return "constraints repeat each other, which leaves their multipliers open: leave out those that are listed";
     case ControlStatus::interrupted:
       return "interrupted; the trajectory is the last iterate";
     case ControlStatus::not_finite:

@@ -38,11 +38,11 @@ ControlStatus status_of(Ipopt::ApplicationReturnStatus ended) {
 }
 
 /// IPOPT stops before the last iteration for reasons of its own, too: then its return code says which.
-std::string message_of(ControlStatus status, Ipopt::ApplicationReturnStatus ended, int max_iterations) {
-  if (status == ControlStatus::converged) return "";
-  if (status == ControlStatus::not_converged && ended != Ipopt::Maximum_Iterations_Exceeded)
+std::string message_of(const ControlReport& report, Ipopt::ApplicationReturnStatus ended) {
+  if (report.converged()) return "";
+  if (report.status == ControlStatus::not_converged && ended != Ipopt::Maximum_Iterations_Exceeded)
     return fmt::format("IPOPT: ended with return code {}; start from another trajectory", int(ended));
-  return "IPOPT: " + advice_of(status, max_iterations);
+  return "IPOPT: " + report.message;
 }
 
 /// Whether the KKT matrix has the inertia of a strict minimum, z_i / -gamma_i taken as it stands.
@@ -103,8 +103,8 @@ IpoptSolution solve_by_ipopt(TrajectoryChart& chart, const ControlOptions& optio
   report.complementarity = left.complementarity;
   report.is_strict_minimum =
       report.converged() && is_strict_minimum(transcription, values, derivatives, out.inequality_multipliers);
-  report.message = message_of(report.status, ended, options.max_iterations);
-  if (!report.converged()) report.worst = worst_violations(sizes, values, options.tolerance);
+  explain_end(transcription, values, derivatives, options, report);
+  report.message = message_of(report, ended);
   return out;
 }
 

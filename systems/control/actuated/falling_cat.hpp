@@ -90,7 +90,10 @@ struct FallingCat : System<FallingCat, Product<SO3, Pair<2>>> {
 /// Moved at the least |torque|^2.
 struct BendingCat : ActuatedSystem<BendingCat, FallingCat, /*controls*/ 2, /*inequalities*/ 3> {
   static constexpr std::array<std::string_view, 10> states{"r1", "r2", "r3", "b1", "b2", "M1", "M2", "M3", "p1", "p2"};
+  static constexpr std::array<std::string_view, 10> state_units{
+      "rad", "rad", "rad", "rad", "rad", "kg m^2/s", "kg m^2/s", "kg m^2/s", "kg m^2/s", "kg m^2/s"};
   static constexpr std::array<std::string_view, 2> control_names{"torque1", "torque2"};
+  static constexpr std::array<std::string_view, 2> control_units{"N m", "N m"};
   /// The angular momentum: at the end it is what it was at the start, and not another condition.
   static constexpr std::array<bool, 10> conserved{false, false, false, false, false, true, true, true, false, false};
 

@@ -33,12 +33,16 @@ template <class Sys, int C> struct Pushed : ActuatedSystem<Pushed<Sys, C>, Sys, 
 
 struct PushedPendulum : Pushed<Pendulum, 1> {
   static constexpr std::array<std::string_view, 2> states{"angle", "momentum"};
+  static constexpr std::array<std::string_view, 2> state_units{"rad", "kg m^2/s"};
   static constexpr std::array<std::string_view, 1> control_names{"torque"};
+  static constexpr std::array<std::string_view, 1> control_units{"N m"};
 };
 
 struct PushedBody : Pushed<RigidBody, 3> {
   static constexpr std::array<std::string_view, 6> states{"r1", "r2", "r3", "M1", "M2", "M3"};
+  static constexpr std::array<std::string_view, 6> state_units{"rad", "rad", "rad", "kg m^2/s", "kg m^2/s", "kg m^2/s"};
   static constexpr std::array<std::string_view, 3> control_names{"torque1", "torque2", "torque3"};
+  static constexpr std::array<std::string_view, 3> control_units{"N m", "N m", "N m"};
 };
 
 }  // namespace lagroid

@@ -64,7 +64,9 @@ struct TwoLinkArm : System<TwoLinkArm, Pair<2>> {
 /// Moved at the least |torque|^2.
 struct PushedArm : ActuatedSystem<PushedArm, TwoLinkArm, /*controls*/ 2, /*inequalities*/ 4> {
   static constexpr std::array<std::string_view, 4> states{"shoulder", "elbow", "momentum1", "momentum2"};
+  static constexpr std::array<std::string_view, 4> state_units{"rad", "rad", "kg m^2/s", "kg m^2/s"};
   static constexpr std::array<std::string_view, 2> control_names{"shoulder_torque", "elbow_torque"};
+  static constexpr std::array<std::string_view, 2> control_units{"N m", "N m"};
 
   template <class Q, class S> Vector<S, 2> force(const Q&, const Vector<S, 2>& u) const { return u; }
   template <class Z, class S> S running_cost(const Z&, const Vector<S, 2>& u) const {

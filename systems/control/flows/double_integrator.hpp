@@ -28,7 +28,9 @@ struct DoubleIntegrator : ControlledFlow<DoubleIntegrator, Pair<2>, 1, 2> {
         choice("cost", &DoubleIntegrator::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 2> states{"x", "v"};
+  static constexpr std::array<std::string_view, 2> state_units{"m", "m/s"};
   static constexpr std::array<std::string_view, 1> control_names{"u"};
+  static constexpr std::array<std::string_view, 1> control_units{"m/s^2"};
 
   template <class S> Vector<S, 2> flow(const Vector<S, 2>& q, const Vector<S, 1>& u) const { return {q(1), u(0)}; }
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 1>& u) const {

@@ -26,7 +26,9 @@ struct DubinsCar : ControlledFlow<DubinsCar, SE2, 1> {
     return std::tuple(choice("cost", &DubinsCar::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 3> states{"x", "y", "angle"};
+  static constexpr std::array<std::string_view, 3> state_units{"m", "m", "rad"};
   static constexpr std::array<std::string_view, 1> control_names{"curvature"};
+  static constexpr std::array<std::string_view, 1> control_units{"1/m"};
 
   template <class Q, class S> Vector<S, 3> flow(const Q&, const Vector<S, 1>& u) const {
     return {u(0), S(1.0), S(0.0)};

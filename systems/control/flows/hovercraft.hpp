@@ -30,7 +30,9 @@ struct Hovercraft : ControlledFlow<Hovercraft, Product<SE2, Pair<3>>, 2> {
                       choice("cost", &Hovercraft::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 6> states{"x", "y", "angle", "w", "vx", "vy"};
+  static constexpr std::array<std::string_view, 6> state_units{"m", "m", "rad", "rad/s", "m/s", "m/s"};
   static constexpr std::array<std::string_view, 2> control_names{"force", "torque"};
+  static constexpr std::array<std::string_view, 2> control_units{"N", "N m"};
 
   template <class Q, class S> Vector<S, 6> flow(const Q& q, const Vector<S, 2>& u) const {
     const Vector<S, 3>& v = std::get<1>(q);  // w, vx, vy

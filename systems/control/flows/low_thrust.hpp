@@ -31,7 +31,9 @@ struct LowThrust : ControlledFlow<LowThrust, Pair<4>, 2, 1> {
                       choice("cost", &LowThrust::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 4> states{"x", "y", "vx", "vy"};
+  static constexpr std::array<std::string_view, 4> state_units{"1", "1", "1", "1"};
   static constexpr std::array<std::string_view, 2> control_names{"ax", "ay"};
+  static constexpr std::array<std::string_view, 2> control_units{"1", "1"};
 
   template <class S> Vector<S, 4> flow(const Vector<S, 4>& q, const Vector<S, 2>& u) const {
     using std::sqrt;

@@ -31,7 +31,9 @@ struct PlanarMass : ControlledFlow<PlanarMass, Pair<4>, 2, 2> {
                       choice("cost", &PlanarMass::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 4> states{"x", "y", "vx", "vy"};
+  static constexpr std::array<std::string_view, 4> state_units{"m", "m", "m/s", "m/s"};
   static constexpr std::array<std::string_view, 2> control_names{"ux", "uy"};
+  static constexpr std::array<std::string_view, 2> control_units{"m/s^2", "m/s^2"};
 
   template <class S> Vector<S, 4> flow(const Vector<S, 4>& q, const Vector<S, 2>& u) const {
     return {q(2), q(3), u(0), u(1)};

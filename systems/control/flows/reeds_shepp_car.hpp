@@ -32,7 +32,10 @@ struct ReedsSheppCar : ControlledFlow<ReedsSheppCar, SE2, 2> {
         parameter("creep", &ReedsSheppCar::creep, "", "e of the running cost 1 + e (1 - speed^2)", nonnegative));
   }
   static constexpr std::array<std::string_view, 3> states{"x", "y", "angle"};
+  static constexpr std::array<std::string_view, 3> state_units{"m", "m", "rad"};
   static constexpr std::array<std::string_view, 2> control_names{"speed", "turn_rate"};
+  static constexpr std::array<std::string_view, 2> control_units{"m/s", "rad/s"};
+  static constexpr std::string_view cost_unit{"s"};
 
   template <class Q, class S> Vector<S, 3> flow(const Q&, const Vector<S, 2>& u) const { return {u(1), u(0), S(0.0)}; }
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 2>& u) const {

@@ -41,7 +41,9 @@ struct RolledBall : ControlledFlow<RolledBall, Product<Pair<2>, SO3>, /*controls
                       choice("cost", &RolledBall::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 5> states{"x", "y", "r1", "r2", "r3"};
+  static constexpr std::array<std::string_view, 5> state_units{"m", "m", "rad", "rad", "rad"};
   static constexpr std::array<std::string_view, 2> control_names{"ux", "uy"};
+  static constexpr std::array<std::string_view, 2> control_units{"m/s", "m/s"};
 
   template <class Q, class S> Vector<S, 5> flow(const Q& q, const Vector<S, 2>& u) const {
     const auto& at = std::get<0>(q);

@@ -38,7 +38,9 @@ struct SatelliteTurn : ControlledFlow<SatelliteTurn, Product<Action<SO3, Rotated
   }
   static constexpr std::array flow_reads{false, true};  // not the direction
   static constexpr std::array<std::string_view, 6> states{"r1", "r2", "r3", "w1", "w2", "w3"};
+  static constexpr std::array<std::string_view, 6> state_units{"rad", "rad", "rad", "rad/s", "rad/s", "rad/s"};
   static constexpr std::array<std::string_view, 3> control_names{"torque1", "torque2", "torque3"};
+  static constexpr std::array<std::string_view, 3> control_units{"N m", "N m", "N m"};
 
   template <class Q, class S> Vector<S, 6> flow(const Q& q, const Vector<S, 3>& u) const {
     const Vector<S, 3>& w = std::get<1>(q);

@@ -32,7 +32,9 @@ struct SteeredCar : ControlledFlow<SteeredCar, Product<SE2, Pair<2>>, 2, 2> {
         choice("cost", &SteeredCar::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 5> states{"x", "y", "angle", "v", "steering"};
+  static constexpr std::array<std::string_view, 5> state_units{"m", "m", "rad", "m/s", "rad"};
   static constexpr std::array<std::string_view, 2> control_names{"acceleration", "steering_rate"};
+  static constexpr std::array<std::string_view, 2> control_units{"m/s^2", "rad/s"};
 
   template <class Q, class S> Vector<S, 5> flow(const Q& q, const Vector<S, 2>& u) const {
     using std::cos;

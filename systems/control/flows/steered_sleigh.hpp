@@ -33,7 +33,9 @@ struct SteeredSleigh : ControlledFlow<SteeredSleigh, Product<SE2, Pair<2>>, 2> {
                       choice("cost", &SteeredSleigh::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 5> states{"x", "y", "angle", "v", "w"};
+  static constexpr std::array<std::string_view, 5> state_units{"m", "m", "rad", "m/s", "rad/s"};
   static constexpr std::array<std::string_view, 2> control_names{"force", "torque"};
+  static constexpr std::array<std::string_view, 2> control_units{"N", "N m"};
 
   template <class Q, class S> Vector<S, 5> flow(const Q& q, const Vector<S, 2>& u) const {
     const Vector<S, 2>& v = std::get<1>(q);  // v, w

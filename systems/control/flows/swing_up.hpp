@@ -32,7 +32,9 @@ struct SwingUp : ControlledFlow<SwingUp, Pair<2>, 1> {
                       choice("cost", &SwingUp::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 2> states{"angle", "rate"};
+  static constexpr std::array<std::string_view, 2> state_units{"rad", "rad/s"};
   static constexpr std::array<std::string_view, 1> control_names{"torque"};
+  static constexpr std::array<std::string_view, 1> control_units{"N m"};
 
   template <class S> Vector<S, 2> flow(const Vector<S, 2>& q, const Vector<S, 1>& u) const {
     using std::sin;

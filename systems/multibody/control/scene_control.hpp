@@ -55,6 +55,7 @@ struct KeepOut {
   Vector<double, 3> centre = Vector<double, 3>::Zero();  ///< of a plane: a point of it
   double radius = 1;
   Vector<double, 3> normal = Vector<double, 3>::UnitZ();  ///< of length one
+  std::string name = {};                                  ///< in messages; empty: its number
 
   template <class S> S value(const Vector<S, 3>& x) const {
     const S a = x(0) - centre(0);
@@ -78,6 +79,7 @@ struct DirectionCone {
   Vector<double, 3> axis = Vector<double, 3>::UnitZ();       ///< a, of the ground, of length one
   double angle = 1;                                          ///< rad, between zero and pi
   Side side = Side::outside;
+  std::string name = {};  ///< in messages; empty: its number
 
   template <class S> S value(const Matrix<S, 3, 3>& attitude_of_body) const {
     S cosine = S(0);
@@ -94,6 +96,7 @@ struct SpeedLimit {
   Attitude attitude = {};             ///< this one
   std::vector<int> axes = {0, 1, 2};  ///< of a planar body 0 and 1, and 2 of its turning
   double most = 1;                    ///< m/s or rad/s
+  std::string name = {};              ///< in messages; empty: its number
 };
 
 /// What is given of the end.

@@ -6,8 +6,9 @@
 namespace lagroid::app {
 
 const ControlProblem& pendulum_problem() {
-  static const ControlProblemOf<PushedPendulum> problem("pendulum",
-                                                        "a pendulum moved by a torque, by its own discrete steps");
+  static const ControlProblemOf<PushedPendulum> problem(
+      "pendulum", "a pendulum moved by a torque, by its own discrete steps",
+      [](const PushedPendulum& pushed) { return hanging(pushed.system.length, "angle"); });
   return problem;
 }
 

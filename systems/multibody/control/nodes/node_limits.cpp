@@ -18,6 +18,13 @@ NodeLimits::NodeLimits(const SceneControl& task, const NodeForces<double>& order
     for (const int axis : each.axes) components.push_back(3 * factor + axis);
     speeds_.emplace_back(std::move(components), each.most);
   }
+  const auto add_names = [&](const auto& limits, const char* kind) {
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      names_.push_back(limits[i].name.empty() ? fmt::format("{} {}", kind, i + 1) : limits[i].name);
+  };
+  add_names(task.keep_outs, "keep-out");
+  add_names(task.cones, "cone");
+  add_names(task.speed_limits, "speed limit");
 }
 
 void NodeLimits::require(const SceneControl& task) {
@@ -58,13 +65,6 @@ void NodeLimits::require(const SceneControl& task) {
           fmt::format("the end that is given has the speed {:.4g}, above its limit {:.4g}: change one of them",
                       std::sqrt(square), each.most));
   }
-}
-
-std::string NodeLimits::name(int i) const {
-  const int keep_outs = int(keep_outs_.size());
-  if (i < keep_outs) return fmt::format("keep-out {}", i + 1);
-  if (i < on_places()) return fmt::format("cone {}", i - keep_outs + 1);
-  return fmt::format("speed limit {}", i - on_places() + 1);
 }
 
 }  // namespace lagroid::multibody

@@ -42,13 +42,14 @@ class NodeLimits {
   const std::vector<int>& components(int k) const { return speeds_[std::size_t(k)].first; }
   double weight(int k) const { return 1 / (speeds_[std::size_t(k)].second * speeds_[std::size_t(k)].second); }
 
-  /// "cone 2".
-  std::string name(int i) const;
+  /// As its task calls it, or "cone 2".
+  const std::string& name(int i) const { return names_[std::size_t(i)]; }
 
  private:
   std::vector<KeepOut> keep_outs_;
   std::vector<DirectionCone> cones_;
   std::vector<std::pair<std::vector<int>, double>> speeds_;  // components, and the largest speed
+  std::vector<std::string> names_;
 };
 
 }  // namespace lagroid::multibody

@@ -1,5 +1,5 @@
 // `lagroid control`: every example, files, refusals, endings.
-#include "command_line.hpp"
+#include "../command_line.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -61,7 +61,7 @@ TEST_F(Control, WritesTrajectoryAndPlotAndRunHandsOver) {
   std::ifstream file(fs::path(out) / "trajectory.csv");
   std::string header;
   std::getline(file, header);
-  EXPECT_EQ(header, "time,x,v,u,costate_1,costate_2");
+  EXPECT_EQ(header, "time,x,v,u,px,pv");
   long rows = 0;
   for (std::string line; std::getline(file, line);) ++rows;
   EXPECT_EQ(rows, 101);
@@ -299,7 +299,7 @@ TEST_F(Control, LimitsOfBodiesSayWhatIsWrongWithThem) {
   const std::string falls = "[[body]]\nname = 'ball'\nkind = 'point'\nmass = 1\nposition = [5, 5, 5]\n";
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'ball'\nangular_speed = 1\n" + falls, "does not turn");
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'ball'\nspeed = 1\n" + falls + "velocity = [2, 0, 0]\n",
-          "speed limit 1 does not hold at the start");
+          "speed limit of ball does not hold at the start");
 }
 
 TEST_F(Control, LimitsOfBodiesAreActiveInWhatIsWritten) {
@@ -431,13 +431,17 @@ TEST_F(Control, ALoopOfWhatConservesItsEndIsRefused) {
 TEST_F(Control, ItsFolderIsNoRun) {
   const std::string out = (folder_ / "found").string();
   ASSERT_EQ(run(scene("fastest_stop") + " --out " + out).code, 0);
-  for (const char* command : {"view ", "plot ", "resume "})
+  for (const char* command : {"plot ", "resume "})
     expect_refused(command + out, "holds what lagroid control found, and no run; its picture is " + out + "/plot.svg");
 }
 
 TEST_F(Control, ABoundThatIsInfiniteIsToldWhatToWrite) {
-  expect_refused(scene("fastest_stop") + " --set 'bounds.u=[-1,inf]'",
-                 "must be finite, got inf; for no bound leave it out, or give one that is never reached");
+  for (const char* bounds : {"bounds.u=[-1,inf]", "bounds.u={min=-inf}"})
+    expect_refused(scene("fastest_stop") + " --set '" + bounds + "'", "inf; for no bound leave it out: { min = ... }");
+  for (const char* other : {"horizon.duration=inf", "boundary.end=[1,inf]"}) {
+    const Outcome r = expect_refused(scene("fastest_stop") + " --set '" + other + "'", "must be finite, got inf");
+    EXPECT_EQ(r.err.find("bound leave"), std::string::npos) << r.err;
+  }
 }
 
 TEST_F(Control, MistakesAreOneLine) {
