@@ -13,7 +13,7 @@
 /// Requires `mass` and `potential`, the latter over any scalar; with object constraints, flows, rates and reference are
 /// the derived class' own.
 
-#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/capabilities/split_system.hpp>
 #include <lagroid/core/derivatives/directional.hpp>
 #include <lagroid/core/parameter.hpp>
@@ -77,8 +77,9 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   }
 
   /// q' = p / m, p' = -dU/dq.
-  Rates<Pair<N>> rates(const State<Pair<N>>& s) const requires(ObjectConstraints == 0) {
-    return {s.momentum / self().mass(), force(s.object)};
+  template <class S = double>
+  RatesOver<Pair<N>, S> rates(const State<Pair<N>, S>& s) const requires(ObjectConstraints == 0) {
+    return {s.momentum / constant<S>(mass_in<S>()), force(s.object)};
   }
 
   /// H = |p|^2 / (2 m) + U(q).

@@ -49,6 +49,14 @@ class Fits(unittest.TestCase):
             # Angles alone know of no mass; and of length and gravity their ratio.
             found = self.fitted(data, "--of", "q", "--wrt", "parameters", "--set", "initial.momentum=[0]")
             self.assertEqual(len(found["undetermined"]), 2)
+            # What is not used is told, and why.
+            self.assertEqual((found["left_out"], found["ignored"]), (["p"], ["temperature"]))
+            told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", data, "--of", "q", "--wrt", "initial, parameters.length")
+            self.assertIn("left out by --of: p\n", told.stdout)
+            self.assertRegex(told.stdout, "ignored, for .*: temperature\n")
+            # So are gaps.
+            told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", data, "--wrt", "parameters.length")
+            self.assertRegex(told.stdout, r"note: .*exact.csv: of p \d+ of 201 fields are empty or NaN")
 
     def test_what_is_fitted_is_as_far_off_as_its_deviation_says(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -133,7 +141,82 @@ class Fits(unittest.TestCase):
             refused("t,q\n0,1\n", "it has bounds, but is not to be fitted", "--wrt", "initial", "--bounds",
                     "parameters.length=1:2")
             refused("t,q\n0,1\n", "which is not from 2 to 3", "--bounds", "parameters.length=2:3")
+            refused("t,q\n-1,1\n", "row 2: t = -1 is before the start of the run")
+            refused("t,q\n0,1\n1e7,1\n", "row 3: t = 10000000 is 100000000 steps after the start")
+            refused("t,q\n0,1e300\n", "row 2: q = 1e+300 is beyond 1e+100 sigma")
+            refused("t,q\n0,nan\n0.1,\n", "all fields that count are empty or NaN")
+            refused("t,q\n0,1\n", "--huber: give a positive number, not -1", "--huber", "-1")
+            refused("t,q\n0,1\n", "--huber: give a positive number, not nan", "--huber", "nan")
+            refused("t,q\n0,1\n", "--sigma q: it is given twice", "--sigma", "q=1,q=2")
+            refused("t,q\n0,1\n", "--bounds parameters.length: it is given twice", "--bounds", "parameters.length=0.5:2,parameters.length=0.5:3")
+            twice = ("--combination", "a=parameters.length", "--combination", "a=parameters.mass")
+            refused("t,q\n0,1\n", "--combination a: it is given twice", *twice)
             refused("", "no header; the first line names t and columns of the run")
+
+    def test_residuals_are_written_beside_what_was_read_and_never_over_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.measured(folder, "exact", 0.0)
+            scene = pathlib.Path(folder) / "scene.toml"
+            scene.write_text((examples / "pendulum.toml").read_text())
+            before = data.read_bytes(), scene.read_bytes()
+            for file, said in ((data, "it is read by this very fit"), (scene, "it is read by this very fit"),
+                               (pathlib.Path(folder) / "none" / "res.csv", "it cannot be written"), (folder, "it cannot be written")):
+                told = run(of_part("pendulum"), "fit", scene, data, "--wrt", "parameters.length", "--residuals", file)
+                self.assertEqual((told.returncode, told.stdout, len(told.stderr.splitlines())), (2, "", 1), told.stderr)
+                self.assertIn(said, told.stderr)
+            self.assertEqual((data.read_bytes(), scene.read_bytes()), before)
+
+    def test_fits_stay_where_scenes_are_allowed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "up.csv"
+            # It falls upwards: a length below zero would do it.
+            file.write_text("t,q\n" + "".join(f"{k / 10},{1.047 + 0.04 * k * k}\n" for k in range(6)))
+            found = self.fitted(file, "--wrt", "parameters.length")
+            length, = found["unknowns"]
+            self.assertGreater(length["value"], 0)
+            self.assertTrue(length["at_bound"] or length["value"] > 1e-3, length)
+            # Bodies, whose scenes alone say what they allow.
+            file.write_text("t,bob.x,bob.z\n0,0.04,-1\n0.5,0.01,-1.2\n1,-0.03,-1.3\n1.5,0,-1.1\n")
+            told = run(of_part("bodies"), "fit", examples / "spring_pendulum.toml", file, "--wrt", "parameters", "--json")
+            self.assertIn(told.returncode, (0, 3), told.stderr)
+            for each in json.loads(told.stdout)["unknowns"]:
+                if each["name"].endswith(("length", "mass", "stiffness")):
+                    self.assertGreater(each["value"], 0, each)
+
+    def test_what_is_carried_on_is_of_this_system_and_a_covariance(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = self.measured(folder, "noisy", 0.01)
+            file = pathlib.Path(folder) / "fit.json"
+            words = ("gradient", examples / "pendulum.toml", "--set", "time.steps=20", "--covariance", file)
+            fitted = self.fitted(data, "--wrt", "parameters.length,initial.momentum")
+
+            def refused(said, change):
+                other = json.loads(json.dumps(fitted))
+                change(other)
+                file.write_text(json.dumps(other))
+                told = run(of_part("pendulum"), *words)
+                self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stdout + told.stderr)
+                self.assertIn(said, told.stderr)
+
+            refused("what was fitted is kepler", lambda f: f.update(system="kepler"))
+            refused("a variance that is negative", lambda f: f["covariance"][0].__setitem__(0, -1))
+            refused("is not symmetric", lambda f: f["covariance"][0].__setitem__(1, f["covariance"][0][1] + 1))
+            both = [[1, 2], [2, 1]]
+            refused("a combination of negative variance", lambda f: f.update(covariance=both))
+            refused("ended at its bound", lambda f: f["unknowns"][0].update(at_bound=True))
+            refused("is one start among several", lambda f: f["unknowns"][0].update(name="initial.p of run 1"))
+            refused("length becomes -1, and is to be positive", lambda f: f["unknowns"][1].update(value=-1))
+            file.write_text(json.dumps(fitted))
+            told = run(of_part("pendulum"), *words)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            # Of as many numbers as unknowns nothing tells how large errors are but a sigma.
+            one = pathlib.Path(folder) / "one.csv"
+            one.write_text("t,q\n1,0.5\n")
+            for sigma, code, said in (((), 2, "errors are not known"), (("--sigma", "q=0.01"), 0, "")):
+                file.write_text(json.dumps(self.fitted(one, "--wrt", "parameters.length", *sigma)))
+                told = run(of_part("pendulum"), *words)
+                self.assertEqual(told.returncode, code, told.stderr)
+                self.assertIn(said, told.stderr)
 
     def test_parameters_of_formulas_are_fitted(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""`lagroid gradient` of steps that vary, of splittings and of boundary values: parts_gradients.py BIN EXAMPLES, as parts.py."""
+"""`lagroid gradient` of steps that vary, of explicit ones, of reduced runs and of boundary values: parts_gradients.py BIN EXAMPLES, as parts.py."""
 import json
 import pathlib
 import sys
 import tempfile
 import unittest
 
-from parts import examples, of_part, run
+from parts import examples, of_part, rows_of, run
 
 
 class Gradients(unittest.TestCase):
@@ -26,6 +26,48 @@ class Gradients(unittest.TestCase):
         told = run(of_part("pendulum"), "gradient", examples / "pendulum_adaptive.toml", "--set", "parameters.quadrature=trapezoid")
         self.assertEqual(told.returncode, 3, told.stderr)
         self.assertIn("has no root", told.stderr)
+
+    def test_gradients_of_explicit_steps(self):
+        runge_kutta = ("--set", "time.method=runge-kutta", "--set", "time.steps=60", "--check", "--json")
+        for system in ("pendulum", "damped_pendulum"):
+            told = run(of_part(system), "gradient", examples / f"{system}.toml", *runge_kutta)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertGreater(found["digits_agreed"], 8)
+            self.assertIn("parameters.length", found["by"])
+        extrapolated = ("gradient", examples / "pendulum.toml", "--set", "time.method=extrapolation", "--set", "time.steps=20", "--check", "--json")
+        for tolerance, fewest in (("1e-4", 2), ("1e-13", 7)):
+            told = run(of_part("pendulum"), *extrapolated, "--set", f"time.tolerance={tolerance}")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertGreater(found["digits_agreed"], fewest)
+            self.assertTrue(any("inner steps" in note for note in found["notes"]), found["notes"])
+
+    def test_gradients_of_reduced_runs(self):
+        program = of_part("kepler").with_name("lagroid-gradient")
+        steps = ("--set", "time.steps=100")
+        reduced = (program, examples / "kepler_reduced.toml", *steps)
+        for more in ((), ("--set", "reduce=rotations"), ("--set", "time.order=4")):
+            told = run(*reduced, *more, "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            self.assertGreater(json.loads(told.stdout)["digits_agreed"], 8, more)
+        # They are those of the full run.
+        full = json.loads(run(program, examples / "kepler.toml", *steps, "--json").stdout)["derivatives"]
+        for row, other in zip(json.loads(run(*reduced, "--json").stdout)["derivatives"], full, strict=True):
+            for x, y in zip(row, other, strict=True):
+                self.assertAlmostEqual(x, y, delta=1e-9 * (1 + abs(y)))
+        # Where the table turns it is not the same everywhere.
+        ball = (of_part("rolling_ball").with_name("lagroid-gradient"), examples / "rolling_ball_reduced.toml", *steps, "--of", "final")
+        found = json.loads(run(*ball, "--check", "--json").stdout)
+        self.assertGreater(found["digits_agreed"], 8)
+        self.assertIn("parameters.radius", found["by"])
+        self.assertNotIn("parameters.plate_rate", found["by"])
+        told = run(*ball, "--wrt", "parameters.plate_rate")
+        self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+        self.assertIn('with another value, "translations" is no symmetry', told.stderr)
+        told = run(*reduced, "--set", "solver.method=ceres")
+        self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+        self.assertIn("reduced runs by equal steps", told.stderr)
 
     def test_where_differences_tell_nothing_it_says_so(self):
         # At the start nothing has moved: differences are the derivatives to rounding.
@@ -284,6 +326,79 @@ kick = ["0.9*a.px", "-0.1*b.py", "0", "0.02*a.px", "0", "0"]
             found = [unknown["value"] for unknown in json.loads(told.stdout)["unknowns"]]
             self.assertAlmostEqual(found[0], 32, delta=32e-9)
             self.assertAlmostEqual(found[1], 1.1, delta=1e-9)
+
+    def gradient_on_spheres(self, scene, *words, code=0):
+        told = run(of_part("spheres"), "gradient", examples / f"{scene}.toml", *words, "--json")
+        self.assertEqual(told.returncode, code, told.stdout + told.stderr)
+        return json.loads(told.stdout)
+
+    def test_gradients_of_scenes_on_spheres_by_every_method(self):
+        methods = ("rattle", "lie-euler", "crouch-grossman-2", "crouch-grossman-3", "commutator-free-4", "munthe-kaas-4", "munthe-kaas-54",
+                   "euler", "runge-kutta-4")
+        chains = [("pendulum_chain", f"time.method={method}", f"time.form={form}") for method in methods
+                  for form in ("velocities", "momenta")] + [("pendulum_chain", "time.order=6", "parameters.masses=1.5")]
+        learned = [("learned_hamiltonian", f"time.method={method}") for method in methods[1:]]
+        for scene, *settings in chains + learned:
+            found = self.gradient_on_spheres(scene, "--set", "time.steps=40", "--of", "final,integral.energy", "--check",
+                                             *(word for each in settings for word in ("--set", each)))
+            self.assertGreater(found["digits_agreed"], 8, settings)
+        self.assertIn("parameters.model.0", found["by"])
+
+    def test_gradients_on_spheres_hold_inner_steps(self):
+        for scene, method in (("pendulum_chain", "extrapolation"), ("pendulum_chain", "munthe-kaas-54"),
+                              ("learned_hamiltonian", "extrapolation"), ("learned_hamiltonian", "munthe-kaas-54")):
+            found = self.gradient_on_spheres(scene, "--set", "time.steps=10", "--set", "time.step=0.05", "--set",
+                                             f"time.method={method}", "--set", "time.tolerance=1e-13", "--of", "final", "--check")
+            self.assertGreater(found["digits_agreed"], 8, (scene, method))
+            self.assertIn("hold the sizes of the inner steps", found["notes"][0])
+        self.gradient_on_spheres("pendulum_chain_adaptive", "--set", "time.steps=5")
+
+    def test_gradients_of_chains_are_of_the_scene_as_it_is_edited(self):
+        scene = ("--set", "time.steps=50")
+        found = self.gradient_on_spheres("pendulum_chain", *scene, "--of", "final.z3,final.w3x", "--wrt", "parameters.masses.0")
+        plain = self.gradient_on_spheres("pendulum_chain", *scene, "--set", "parameters.lengths=0.8", "--of", "final.z3", "--wrt",
+                                         "parameters.lengths")
+        self.assertEqual(plain["by"], ["parameters.lengths"])
+        with tempfile.TemporaryDirectory() as folder:
+            def last(*settings):
+                told = run(of_part("spheres"), "run", examples / "pendulum_chain.toml", *scene, *settings, "--set", "output.every=1",
+                           "--out", out := pathlib.Path(tempfile.mkdtemp(dir=folder)) / "run")
+                self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+                row = rows_of(out / "trajectory.csv")[-1]
+                return float(row["z3"]), float(row["w3x"])
+
+            def difference(key, *values):
+                below, above = (last("--set", f"parameters.{key}={value}") for value in values)
+                return [(b - a) / 2e-5 for a, b in zip(below, above)]
+
+            for exact, close in zip(found["derivatives"], difference("masses", "[0.99999,0.5,2]", "[1.00001,0.5,2]")):
+                self.assertAlmostEqual(exact[0], close, delta=1e-7)
+            self.assertAlmostEqual(plain["derivatives"][0][0], difference("lengths", "0.79999", "0.80001")[0], delta=1e-7)
+
+    def test_scenes_on_spheres_say_what_has_no_derivative(self):
+        for words, why in ((("--set", 'event=[{name = "e", when = "x1"}]'), "no derivatives through events"),
+                           (("--wrt", "parameters.links"), "nothing of that name is differentiable here")):
+            told = run(of_part("spheres"), "gradient", examples / "pendulum_chain.toml", *words)
+            self.assertEqual(told.returncode, 2, told.stdout)
+            self.assertIn(why, told.stderr)
+
+    def test_numbers_and_starts_of_chains_are_fitted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = (examples / "pendulum_chain.toml", "--set", "time.steps=400")
+            told = run(of_part("spheres"), "run", *scene, "--set", "parameters.lengths=[1.02,0.7,0.4]", "--set",
+                       "initial.theta=[1.93,1.4,2.6]", "--out", pathlib.Path(folder) / "run")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            told = run(of_part("spheres"), "fit", scene[0], pathlib.Path(folder) / "run" / "trajectory.csv", *scene[1:], "--of",
+                       "x3,y3,z3,q1x", "--wrt", "initial.q1,initial.w1,parameters.lengths.0", "--json")
+            self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+            found = {unknown["name"]: unknown["value"] for unknown in json.loads(told.stdout)["unknowns"]}
+            self.assertAlmostEqual(found["parameters.lengths.0"], 1.02, delta=1e-8)
+            self.assertAlmostEqual(found["initial.q1.south"], 0.03, delta=1e-8)
+            self.assertAlmostEqual(found["initial.q1.east"], 0, delta=1e-8)
+            file = pathlib.Path(folder) / "fit.json"
+            file.write_text(told.stdout)
+            carried = self.gradient_on_spheres("pendulum_chain", *scene[1:], "--covariance", file, "--of", "final.position")
+            self.assertEqual(len(carried["covariance"]), 9)
 
 
 if __name__ == "__main__":

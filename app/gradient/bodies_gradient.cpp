@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 namespace lagroid::app {
@@ -212,6 +213,9 @@ std::vector<int> refuse_at_start(
 std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   if (!scene.has(keys::bodies)) return std::nullopt;
   const BodiesScene read = read_bodies(scene, {});
+  if (read.options.tolerance > 0)
+    scene.section("solver", "")
+        .fail("tolerance", "derivatives are of steps that are solved to round-off; leave it out");
   const bool controlled = read.options.controlled;
   if (controlled && !read.extent.events.empty())
     scene.fail("event",
@@ -286,6 +290,16 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
                       });
   };
   out.begin = begin;
+  out.refusal = [begun_with](const std::vector<Nudge>& nudges) -> std::string {
+    try {
+      return begun_with(
+          {}, nudges, [](const Multibody&, const std::vector<SceneNumber>&, const Section&) { return std::string(); });
+    } catch (const SceneError& error) {
+      return error.problem();
+    } catch (const std::domain_error& error) {
+      return error.what();
+    }
+  };
   if (controlled)
     out.begin = [begun_with](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
       return begun_with(parameters, nudges,

@@ -1,5 +1,8 @@
 #include "event_gradient.hpp"
 
+#include "checks/differences.hpp"
+#include "checks/run_growth.hpp"
+
 #include <lagroid/run/events/event_watch.hpp>
 #include <lagroid/run/files/output_folder.hpp>
 
@@ -251,14 +254,23 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
     for (std::size_t j = 0; j < columns.parameters.size(); ++j)
       out.derivatives(at, Eigen::Index(columns.start.size() + j)) = found->by_parameters(Eigen::Index(j));
   }
-  set_growth(out, whole.growth);
+  SizesOfUnits sizes;
+  see(subject, subject.begin({}, {})->observe().values, sizes);
+  see(subject, whole.observed, sizes);
+  for (const auto& each : whole.happened) see(subject, each.observed, sizes);
+  const RunGrowth growth(subject, sizes);
+  const bool by_start = whole.observed_by_start.cols() == Eigen::Index(subject.start.size());
+  const Eigen::MatrixXd observed_by_start =
+      by_start ? whole.observed_by_start
+               : subject.through_events({}, {}, -1, ThroughEvents::start_too).observed_by_start;
+  set_growth(out, growth.factor(observed_by_start * growth.along()));
   // Where an event passes a node its partial step is one from another node, and the derivative has a kink there of the
-  // order of the method: differences are to be narrow enough for both runs to have it in one step.
+  // order of the method: that is seen by differences so wide that one of both runs has it in another step.
   if (check)
     compare_with_differences(
         subject, columns, out,
         [&](const std::vector<Nudge>& nudges) { return values_through_events(subject, out, nudges); },
-        {2e-3, 2e-4, 2e-5});
+        {sizes, out.growth, subject.tolerance});
   return out;
 }
 

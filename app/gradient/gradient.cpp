@@ -1,5 +1,5 @@
-#include "computed_columns.hpp"
-#include "fit/fit.hpp"
+#include "columns/computed_columns.hpp"
+#include "fit/fit_command.hpp"
 #include "gradient_table.hpp"
 #include "system_gradients.hpp"
 #include "uncertainty.hpp"
@@ -15,8 +15,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -56,36 +54,25 @@ template <class Found> int report(const SceneOptions& options, const Found& foun
   return failure.empty() ? 0 : exit_failed;
 }
 
-/// Adds notes of the subject, and one where the start is given by what is another momentum for other parameters.
-void note_start(const Section& scene, const GradientSubject& subject, GradientTable& table) {
+/// Adds notes of the subject.
+void add_notes(const GradientSubject& subject, GradientTable& table) {
   table.notes.insert(table.notes.end(), subject.notes.begin(), subject.notes.end());
-  const bool by_parameters = std::any_of(table.columns.begin(), table.columns.end(),
-                                         [](const std::string& column) { return column.rfind("parameters.", 0) == 0; });
-  if (!by_parameters || subject.begun_by) return;
-  const Section initial = scene.section_or_empty("initial");
-  for (const char* key : {"velocity", "rates", "spin"}) {
-    if (!initial.has(key)) continue;
-    table.notes.push_back(fmt::format(
-        "the start is given by initial.{}: derivatives by parameters hold the momentum that it comes to, not the {} "
-        "itself",
-        key, key));
-    return;
-  }
 }
 
-/// Refuses scenes whose runs have no derivatives, of which this program knows no family.
-void require_derivatives(const Section& scene) {
+/// Refuses scenes on spheres where this program has not their family.
+void require_family(const Section& scene) {
   if (!scene.has(keys::system)) return;
   const std::string system = scene.text(keys::system, "the name of a system");
-  if (std::find(keys::on_spheres.begin(), keys::on_spheres.end(), system) != keys::on_spheres.end())
-    scene.fail(keys::system, fmt::format("runs of \"{}\" have no derivatives", system));
+  const auto knows = [&](const auto& names) { return std::find(names.begin(), names.end(), system) != names.end(); };
+  if (knows(keys::on_spheres) && !knows(family_of(scene).names()))
+    scene.fail(keys::system, fmt::format("this program has no derivatives of runs of \"{}\"", system));
 }
 
 /// Finds the scene's subject and calls use(subject, scene); what cannot be done is said in one line.
 template <class Use>
 int with_subject(const SceneOptions& options, const std::vector<AskGradient>& subjects, const Use& use) {
   const Section scene = read_scene(options.scene, options.overrides);
-  require_derivatives(scene);
+  require_family(scene);
   for (const AskGradient ask : subjects) {
     try {
       const auto subject = ask(scene);
@@ -106,7 +93,7 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
 }
 
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
-  return with_subject(options, subjects, [&](const GradientSubject& plain, const Section& scene) {
+  return with_subject(options, subjects, [&](const GradientSubject& plain, const Section&) {
     const auto more = [&](const GradientSubject& of) { return with_columns(of, named_texts(options.columns)); };
     if (!options.deviations.empty() || !options.covariance.empty()) {
       if (plain.cost) throw GradientRefused("errors are carried along runs; a boundary value has a gradient alone");
@@ -114,7 +101,7 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
                                                             : fitted_errors(options.covariance);
       const GradientSubject subject = more(moved_to(plain, errors));
       Uncertainty found = uncertainty_of(subject, options.of, errors, options.draws);
-      note_start(scene, subject, found.table);
+      add_notes(subject, found.table);
       return report(options, found, found.table.failure);
     }
     if (options.draws.count > 0) throw GradientRefused("--draws are of errors: give --deviations or --covariance");
@@ -127,53 +114,19 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
       if (subject.parameters.empty() && subject.refused.empty()) by.pop_back();
     }
     GradientTable table = differentiate(subject, of, by, options.check);
-    note_start(scene, subject, table);
-    return report(options, table, table.failure);
+    add_notes(subject, table);
+    const int code = report(options, table, table.failure);
+    return code == 0 && !table.contradicted.empty() ? exit_failed : code;
   });
-}
-
-struct FitCommandOptions : SceneOptions {
-  std::vector<std::string> data;
-  FitOptions fit;
-  std::vector<std::string> columns, combinations, sigma, bounds;
-  std::string residuals;
-};
-
-/// NAME=NUMBER, or NAME=LOW:HIGH.
-double number_in(const std::string& word, std::size_t from, std::size_t to, const char* form) {
-  double x = 0;
-  const char* const end = word.data() + to;
-  const auto read = std::from_chars(word.data() + from, end, x);
-  if (read.ec != std::errc() || read.ptr != end || !std::isfinite(x))
-    throw GradientRefused(fmt::format("{}: give {}", word, form));
-  return x;
-}
-FitOptions fit_options(const FitCommandOptions& options) {
-  FitOptions out = options.fit;
-  out.combinations = named_texts(options.combinations);
-  for (const std::string& word : options.sigma) {
-    const std::size_t at = std::min(word.find('='), word.size());
-    const double sigma = number_in(word, std::min(at + 1, word.size()), word.size(), "COLUMN=SIGMA");
-    if (!(sigma > 0)) throw GradientRefused(fmt::format("{}: a sigma is positive", word));
-    out.sigma[word.substr(0, at)] = sigma;
-  }
-  for (const std::string& word : options.bounds) {
-    const std::size_t at = std::min(word.find('='), word.size()), colon = std::min(word.find(':', at), word.size());
-    const char* const form = "NAME=LOW:HIGH";
-    const double low = number_in(word, std::min(at + 1, word.size()), colon, form);
-    const double high = number_in(word, std::min(colon + 1, word.size()), word.size(), form);
-    if (!(low < high)) throw GradientRefused(fmt::format("{}: the first bound is the lower one", word));
-    out.bounds[word.substr(0, at)] = {low, high};
-  }
-  return out;
 }
 
 int fit_of_scene(const FitCommandOptions& options, const std::vector<AskGradient>& subjects) {
   return with_subject(options, subjects, [&](const GradientSubject& plain, const Section&) {
+    require_place_of_residuals(options);
     const GradientSubject subject = with_columns(plain, named_texts(options.columns));
     const Fit fit = fit_scene(subject, options.data, fit_options(options));
-    if (fit.failure.empty() && !options.residuals.empty()) write_text(csv_of(fit), options.residuals);
     const int code = report(options, fit, fit.failure);
+    if (fit.failure.empty() && !options.residuals.empty()) write_text(csv_of(fit), options.residuals);
     return code == 0 && !fit.converged() ? exit_failed : code;
   });
 }
@@ -182,35 +135,8 @@ int fit_program(int argc, char** argv, const std::vector<AskGradient>& subjects)
   CLI::App app{"parameters and starts of a scene from measured columns", "lagroid fit"};
   FitCommandOptions options;
   add_scene_options(app, options);
-  app.add_option("data", options.data, "CSV or HDF5 files with t and columns of the run; one for each run")->required();
-  app.add_option("--wrt", options.fit.unknowns,
-                 "what is fitted: initial.NAME or parameters.NAME, separated by commas (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--of", options.fit.columns, "columns of the data to use, separated by commas (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_fit_options(app, options);
   add_columns_option(app, options.columns);
-  app.add_option("--combination", options.combinations,
-                 "NAME=EXPRESSION of initial.NAME and parameters.NAME: how well it is known; may be repeated")
-      ->allow_extra_args(false);
-  app.add_option("--sigma", options.sigma,
-                 "COLUMN=SIGMA, separated by commas: the standard deviations of its errors (default: 1)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--bounds", options.bounds, "NAME=LOW:HIGH, separated by commas: what is fitted stays between")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--huber", options.fit.huber, "residuals beyond so many sigma weigh by their size, not its square")
-      ->check(CLI::PositiveNumber);
-  auto* starts = app.add_option("--starts", options.fit.starts, "guesses: the scene, and others drawn around it")
-                     ->check(CLI::Range(1, 10'000));
-  app.add_option("--spread", options.fit.spread, "of these, relative to each unknown (default 0.3)")
-      ->check(CLI::PositiveNumber)
-      ->needs(starts);
-  app.add_option("--seed", options.fit.seed, "of these")->needs(starts);
-  app.add_option("--residuals", options.residuals,
-                 "a CSV file to write: what was measured and what the fitted run has");
   return command_line(app, argc, argv, options, [&] { return fit_of_scene(options, subjects); });
 }
 
@@ -245,15 +171,18 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
                      "initial.NAME=SIGMA or parameters.NAME=SIGMA, separated by commas: what independent "
                      "errors of these standard deviations become");
   deviations->delimiter(',')->allow_extra_args(false)->excludes("--wrt");
-  app.add_option("--covariance", options.covariance,
-                 "what lagroid fit --json printed, as a file: what the errors of its solution become, from there")
-      ->excludes("--wrt")
-      ->excludes(deviations);
+  auto* covariance =
+      app.add_option("--covariance", options.covariance,
+                     "what lagroid fit --json printed, as a file: what the errors of its solution become, from there");
+  covariance->excludes("--wrt")->excludes(deviations);
   app.add_option("--draws", options.draws.count,
                  "with one of these: compare with so many runs from starts drawn at random")
       ->check(CLI::Range(2L, 10'000'000L));
   app.add_option("--seed", options.draws.seed, "of those draws")->needs("--draws");
-  app.add_flag("--check", options.check, "compare with extrapolated differences of runs");
+  app.add_flag("--check", options.check,
+               "compare with extrapolated differences of runs; ends with 3 where they contradict")
+      ->excludes(deviations)
+      ->excludes(covariance);
   return command_line(app, argc, argv, options, [&] { return gradient_of_scene(options, subjects); });
 }
 

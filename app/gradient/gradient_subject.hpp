@@ -65,6 +65,10 @@ struct GradientSubject {
   /// Numbers by which there is no derivative, as initial.NAME and parameters.NAME, and why; whether they are among
   /// those of `start` and `parameters` or not.
   std::vector<std::pair<std::string, std::string>> refused = {};
+  /// Why no scene has numbers that differ so: a parameter out of its range, a start off its constraint; empty where one
+  /// has. Null where all are allowed.
+  std::function<std::string(const std::vector<Nudge>&)> refusal = nullptr;
+  double tolerance = 0;                  ///< to which runs from starts beside each other are values of one function
   std::vector<std::string> notes = {};   ///< on what derivatives hold
   std::vector<std::string> events = {};  ///< of the scene, by their names
   /// The run through them, observed where they happen and at a node, or at the end for -1, by what is asked for; null

@@ -3,22 +3,21 @@
 ///
 ///     const GradientSubject subject = gradient_subject_of(module.prepare(scene, context), scene);
 ///
-/// Errors: SceneError for an initial value that is not by equal, adaptive, prescribed or controlled steps, or has
-/// events but no equal steps of order two; std::invalid_argument for an event without derivatives.
+/// Errors: SceneError for an initial value by steps without derivatives (motion_of_steps.hpp), or with events but no
+/// equal steps of order two; std::invalid_argument for an event without derivatives.
 
 #include "../scenes/simulation.hpp"
 #include "../scenes/system_module.hpp"
 #include "boundary/boundary_cost_of.hpp"
 #include "event_gradient.hpp"
 #include "gradient_subject.hpp"
+#include "motion_of_steps.hpp"
+#include "velocity_start.hpp"
 
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/run/events/event_sensitivities.hpp>
 #include <lagroid/run/expressions/varied_expression.hpp>
-#include <lagroid/solvers/integrators/composition.hpp>
-#include <lagroid/solvers/sensitivity/explicit/linearised_splitting.hpp>
-#include <lagroid/solvers/sensitivity/sensitivities.hpp>
-#include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
+#include <lagroid/run/motion/parameter_values.hpp>
 
 #include <fmt/format.h>
 
@@ -41,66 +40,77 @@ inline void name_all(std::vector<GradientName>& out, const std::string& group, i
     out.push_back({group, int(labels.size()) == count ? labels[std::size_t(i)] : group + "." + std::to_string(i)});
 }
 
-/// Where a run begins.
-template <DiscreteSystem Sys> struct Started {
-  Sys system;
-  State<typename Sys::GroupoidType> start;
-  ArrowOf<typename Sys::GroupoidType> configuration;
+/// What is observed at a node, by name and by number: object, momentum and the configuration. On pairs that is where
+/// the motion began and the position, and left out.
+template <DiscreteSystem Sys> struct ObservedColumns {
+  using G = typename Sys::GroupoidType;
+  static constexpr int objects = G::object_coordinate_count();
+  static constexpr int arrows = is_pair<G> ? 0 : G::arrow_coordinate_count();
+
+  /// `timed`: with the time, which motions by such steps observe after the momentum.
+  std::vector<GradientName> names(const Presentation<Sys>& presentation, bool timed) const {
+    std::vector<GradientName> out;
+    name_all(out, is_pair<G> ? "position" : "object", objects, presentation.position);
+    name_all(out, "momentum", Sys::dimension, presentation.momentum);
+    if (timed) out.push_back({"time", "t"});
+    name_all(out, "configuration", arrows, {});
+    return out;
+  }
+  template <class Node> VariedVector operator()(const Node& node) const {
+    VariedVector out(objects + Sys::dimension + arrows);
+    out.head(objects) = node.system.groupoid.coordinates_of_object(node.object);
+    out.segment(objects, Sys::dimension) = node.momentum;
+    if constexpr (arrows > 0) out.tail(arrows) = node.system.groupoid.coordinates_of_arrow(node.configuration);
+    return out;
+  }
 };
+
 template <DiscreteSystem Sys> Started<Sys> nudged(Started<Sys> from, const std::vector<Nudge>& nudges) {
   using G = typename Sys::GroupoidType;
+  if (nudges.empty()) return from;
   AlgebroidVector<G> v = AlgebroidVector<G>::Zero();
+  auto given = given_beside_place(from.system, from.start);
   nudge_parameters(from.system, nudges);
   for (const Nudge& nudge : nudges)
     if (nudge.parameter.empty())
-      (nudge.index < G::dimension ? v(nudge.index) : from.start.momentum(nudge.index - G::dimension)) += nudge.by;
-  if (nudges.empty()) return from;
+      (nudge.index < G::dimension ? v(nudge.index) : given(nudge.index - G::dimension)) += nudge.by;
   const G& groupoid = from.system.groupoid;
   const ArrowOf<G> displaced = groupoid.tau(from.start.object, v);
   from.start.object = groupoid.target(displaced);
   from.configuration = groupoid.compose(from.configuration, displaced);
+  from.start.momentum = momentum_of_given(from.system, from.start.object, given);
   return from;
 }
 
-template <DiscreteSystem Sys>
-std::unique_ptr<Integrator<Sys>> integrator_of(const Started<Sys>& from, const Composition& composition) {
-  if constexpr (StepDependent<Sys>)
-    if (composition.stages() > 1)
-      return std::make_unique<lagroid::detail::IntegratorOf<Sys, CompositionIntegrator<Sys>>>(
-          from.system, from.start, from.configuration, composition, [] { return std::make_unique<NewtonStep<Sys>>(); });
-  SensitivityOptions<Sys> options;
-  options.configuration = from.configuration;
-  return lagroid::detail::newton_integrator(from.system, from.start, options);
+/// Why no scene starts so; empty where one does.
+template <DiscreteSystem Sys> std::string refusal_of_start(Started<Sys> from) {
+  std::string why = set_parameters(from.system, parameter_values(from.system));
+  if constexpr (Sys::object_constraints > 0) {
+    const auto& q = from.start.object;
+    const double off = from.system.object_constraint(q).cwiseAbs().maxCoeff();
+    // As where scenes are read (system_scene.hpp).
+    if (why.empty() && !(off <= 1e-8 * (1 + from.system.groupoid.coordinates_of_object(q).squaredNorm())))
+      why = fmt::format("the start is off the constraint C(q) = 0 by {:.3g}", off);
+  }
+  return why;
 }
 
-/// By compositions of the system's flows.
-template <DiscreteSystem Sys, class Observe>
-std::unique_ptr<LinearisedMotion> split_motion(const Started<Sys>& from, const Composition& composition,
-                                               const std::vector<std::string>& parameters, const Observe& observe) {
-  if constexpr (SplitSystem<Sys>) {
-    return std::make_unique<LinearisedSplitting<Sys>>(from.system, from.start, from.configuration, composition,
-                                                      parameters, observe);
-  } else {
-    return nullptr;  // no scene of this system has such steps
-  }
-}
-
-/// By steps that vary, observed with the time after object and momentum.
-template <TimeMode mode, DiscreteSystem Sys, class Observe>
-std::unique_ptr<LinearisedMotion> timed_motion(const Started<Sys>& from, const std::vector<std::string>& parameters,
-                                               const Observe& observe) {
-  if constexpr (TimedDerivatives<Sys, mode>) {
-    const auto with_time = [observe](const ObservedTimedNode<Sys>& node) {
-      constexpr int first = Sys::GroupoidType::object_coordinate_count() + Sys::dimension;
-      const VariedVector seen = observe(node);
-      VariedVector all(seen.size() + 1);
-      all << seen.head(first), node.time, seen.tail(seen.size() - first);
-      return all;
-    };
-    return std::make_unique<TimedMotion<Sys, mode>>(from.system, from.start, from.configuration, parameters, with_time);
-  } else {
-    return nullptr;  // no scene of this system has such steps
-  }
+/// Refuses also parameters with any other value of which the run could not be reduced.
+inline void find_refused_reduced(GradientSubject& subject) {
+  find_refused(subject, [&](const std::vector<std::string>& parameters) {
+    for (std::size_t i = 0; i < subject.parameters.size(); ++i) {
+      const std::string& name = subject.parameters[i].name;
+      if (std::find(parameters.begin(), parameters.end(), name) == parameters.end()) continue;
+      const double value = subject.sizes[subject.start.size() + i];
+      try {
+        subject.begin({}, {{0, name, 1e-3 * (value == 0 ? 1 : value)}});
+      } catch (const std::invalid_argument& broken) {
+        throw WithoutDerivative(fmt::format("with another value, {}; leave out reduce", broken.what()));
+      }
+    }
+    const auto motion = subject.begin(parameters, {});
+    if (motion->advance().converged()) motion->linearise();
+  });
 }
 
 /// The events of a scene, of the time and of what is observed. Throws std::invalid_argument for one that has no
@@ -146,19 +156,10 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   using differentiating::name_all;
   if (!prepared.begin) return cost_subject_of(prepared, scene);
   if (!prepared.stated)
-    scene.fail("time",
-               "gradient takes equal steps, perhaps composed, and adaptive, prescribed or controlled ones, solved by "
-               "Newton to round-off, and splittings; leave out other modes and methods, without_root, [solver] and "
-               "reduce");
+    scene.fail("time", "steps of this system's own method have no derivatives; leave out time.method");
   Sys system = prepared.system;
   const StatedInitialValue<Sys>& value = *prepared.stated;
-  const TimeMode mode = value.choice.options.mode;
-  const Composition& composition = value.choice.options.composition;
-  const bool split = by_splitting(value.choice);
-  if (mode == TimeMode::controlled && !TimedDerivatives<Sys, TimeMode::controlled>)
-    scene.fail("time",
-               "the time scale by which steps of this system are controlled has no derivatives; take "
-               "mode = \"adaptive\" or equal steps");
+  require_derivatives_of_steps(value, scene);
   constexpr int n = G::dimension;
   GradientSubject out;
   if (value.choice.accuracy > 0) {
@@ -166,56 +167,59 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     if (!find_first_step(system, value.initial, value.choice, found)) scene.fail("time", found.message);
     for (const std::string& note : found.notes) out.notes.push_back(note + ", which derivatives hold");
   }
+  if (value.choice.options.fixed == StepKind::extrapolation) {
+    out.notes.push_back("derivatives hold the inner steps that the tolerance asked for between nodes");
+    out.tolerance = value.choice.options.tolerance;
+  }
   out.system = value.presentation.name;
   out.steps = value.extent.steps;
+  const differentiating::ObservedColumns<Sys> observe{};
+  out.observed = observe.names(value.presentation, value.choice.options.mode != TimeMode::fixed);
   // Of pairs the displacement is that of the position itself.
   constexpr bool on_pairs = differentiating::is_pair<G>;
-  name_all(out.observed, on_pairs ? "position" : "object", G::object_coordinate_count(), value.presentation.position);
-  name_all(out.observed, "momentum", n, value.presentation.momentum);
-  if (mode != TimeMode::fixed) out.observed.push_back({"time", "t"});
-  // On pairs it is where the motion began and the position.
-  if (!on_pairs) name_all(out.observed, "configuration", G::arrow_coordinate_count(), {});
   name_all(out.start, on_pairs ? "position" : "displacement", n,
            on_pairs ? value.presentation.position : std::vector<std::string>());
-  name_all(out.start, "momentum", n, value.presentation.momentum);
+  static_assert(velocity_start_fits<Sys>,
+                "velocity_names is there but velocities(z) or momentum_of(q, v) does not fit (see StartsByVelocity)");
+  const auto given = given_beside_place(system, value.initial);
+  if constexpr (StartsByVelocity<Sys>) {
+    for (const std::string_view name : Sys::velocity_names) out.start.push_back({"velocity", std::string(name)});
+  } else {
+    name_all(out.start, "momentum", n, value.presentation.momentum);
+  }
   for (int i = 0; i < n; ++i) {
     double size = 1;
     if constexpr (on_pairs) size = value.initial.object(i);
     out.sizes.push_back(size);
   }
-  for (int i = 0; i < n; ++i) out.sizes.push_back(value.initial.momentum(i));
+  out.sizes.insert(out.sizes.end(), given.begin(), given.end());
   name_parameters(system, out);
   const auto started = [system, initial = value.initial,
                         configuration = value.configuration](const std::vector<Nudge>& nudges) {
-    return differentiating::nudged(differentiating::Started<Sys>{system, initial, configuration}, nudges);
+    return differentiating::nudged(Started<Sys>{system, initial, configuration}, nudges);
   };
-  const auto observe = [](const auto& node) {
-    const auto object = node.system.groupoid.coordinates_of_object(node.object);
-    const auto arrow = node.system.groupoid.coordinates_of_arrow(node.configuration);
-    VariedVector all_of_it(object.size() + n + arrow.size());
-    all_of_it << object, node.momentum, arrow;
-    return all_of_it;
+  out.begin = [started, observe, stated = prepared.stated](const std::vector<std::string>& parameters,
+                                                           const std::vector<Nudge>& nudges) {
+    return motion_of_steps(*stated, started(nudges), parameters, observe);
   };
-  out.begin = [started, observe, mode, split, composition](
-                  const std::vector<std::string>& parameters,
-                  const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {
-    const auto from = started(nudges);
-    if (split) return differentiating::split_motion(from, composition, parameters, observe);
-    if (mode == TimeMode::adaptive) return differentiating::timed_motion<TimeMode::adaptive>(from, parameters, observe);
-    if (mode == TimeMode::prescribed)
-      return differentiating::timed_motion<TimeMode::prescribed>(from, parameters, observe);
-    if (mode == TimeMode::controlled)
-      return differentiating::timed_motion<TimeMode::controlled>(from, parameters, observe);
-    return std::make_unique<LinearisedMotionOf<Sys>>(from.system, differentiating::integrator_of(from, composition),
-                                                     parameters, observe);
+  if constexpr (StartsByVelocity<Sys>)
+    out.begun_by = [started](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+      const auto from = started(nudges);
+      return slope_of_start(from.system, from.start, parameters);
+    };
+  out.refusal = [started](const std::vector<Nudge>& nudges) {
+    return differentiating::refusal_of_start(started(nudges));
   };
-  find_refused(out);
+  if (value.reduced)
+    differentiating::find_refused_reduced(out);
+  else
+    find_refused(out);
   if (!value.extent.events.empty()) {
-    if (mode != TimeMode::fixed || split || composition.stages() > 1)
+    if (!by_single_steps(value))
       scene.fail(
           "event",
-          "gradient goes through events by equal steps of order two; leave out mode, method, order and composition, or "
-          "them");
+          "gradient goes through events by equal steps of order two; leave out mode, method, order, composition and "
+          "reduce, or them");
     if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
       require_events(value.extent.events, *prepared.begin());
       const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);
@@ -226,7 +230,9 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
         const auto from = started(nudges);
         SensitivityOptions<Sys> options{.steps = steps, .parameters = parameters, .configuration = from.configuration};
         options.observed.node = node;
-        return event_sensitivities<Sys>(from.system, from.start, events, options, observe);
+        EventSensitivities run = event_sensitivities<Sys>(from.system, from.start, events, options, observe);
+        if constexpr (StartsByVelocity<Sys>) follow_start(slope_of_start(from.system, from.start, parameters), run);
+        return run;
       };
     } else {
       scene.fail("event", fmt::format("{} has a Lagrangian that does not take its step, so that parts of steps have no "

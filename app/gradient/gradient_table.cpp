@@ -1,6 +1,8 @@
 #include "gradient_table.hpp"
 
 #include "boundary/boundary_cost.hpp"
+#include "checks/differences.hpp"
+#include "checks/run_growth.hpp"
 #include "event_gradient.hpp"
 
 #include <lagroid/solvers/sensitivity/propagate.hpp>
@@ -13,8 +15,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
-#include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -88,35 +89,51 @@ std::vector<int> chosen_with_derivatives(const GradientSubject& subject, const s
   return out;
 }
 
-/// Functions at a place, by all columns, in the direction that costs less.
-Propagated propagated(const GradientSubject& subject, const GradientColumns& columns, const Observed& observed,
-                      std::size_t rows) {
+/// Functions at a place, by all columns, in the direction that costs less; and the growth of errors on the way there.
+struct AtPlace {
+  Propagated found;
+  double growth = 1;
+};
+AtPlace propagated(const GradientSubject& subject, const GradientColumns& columns, const RunGrowth& growth,
+                   const Observed& observed, std::size_t rows) {
   const auto motion = subject.begin(names_of(subject, columns), {});
-  const Eigen::MatrixXd directions = directions_of(subject, columns, {}, motion->states());
-  if (4 * rows >= std::size_t(directions.cols()))
-    return propagate_forward(*motion, subject.steps, directions, observed);
-  Propagated out = propagate_backward(*motion, subject.steps, observed);
-  if (out.converged()) out.derivatives = Eigen::MatrixXd(out.derivatives * directions);
+  const Eigen::MatrixXd asked = directions_of(subject, columns, {}, motion->states());
+  GradientColumns whole = columns;
+  whole.start.resize(subject.start.size());
+  std::iota(whole.start.begin(), whole.start.end(), 0);
+  const Eigen::MatrixXd along =
+      directions_of(subject, whole, {}, motion->states()).leftCols(growth.along().rows()) * growth.along();
+  AtPlace out;
+  Eigen::MatrixXd errors;
+  if (4 * rows >= std::size_t(asked.cols())) {
+    Eigen::MatrixXd directions(asked.rows(), asked.cols() + along.cols());
+    directions << asked, along;
+    out.found = propagate_forward(*motion, subject.steps, directions, observed);
+    if (!out.found.converged()) return out;
+    errors = out.found.derivatives.rightCols(along.cols());
+    out.found.derivatives = out.found.derivatives.leftCols(asked.cols()).eval();
+  } else {
+    out.found = propagate_backward(*motion, subject.steps, observed);
+    if (!out.found.converged()) return out;
+    errors = out.found.derivatives * along;
+    out.found.derivatives = (out.found.derivatives * asked).eval();
+  }
+  out.growth = growth.factor(errors);
   return out;
 }
 
-/// By central differences of runs, three widths, extrapolated; none where one of the runs has no values.
-std::optional<Eigen::VectorXd> difference(const std::function<std::optional<Eigen::VectorXd>(double)>& values,
-                                          double width) {
-  std::vector<Eigen::VectorXd> row;
-  for (int level = 0; level < 3; ++level, width /= 2) {
-    const auto above = values(width), below = values(-width);
-    if (!above || !below) return std::nullopt;
-    Eigen::VectorXd next = (*above - *below) / (2 * width);
-    double power = 4;
-    for (Eigen::VectorXd& each : row) {
-      const Eigen::VectorXd better = next + (next - each) / (power - 1);
-      each = std::exchange(next, better);
-      power *= 4;
-    }
-    row.push_back(next);
+/// Ends a table with a number that is none; a function is without derivative there, or has no value.
+void fail_where_not_finite(GradientTable& table) {
+  for (Eigen::Index i = 0; i < table.values.size() && table.failure.empty(); ++i) {
+    const std::string& row = table.rows[std::size_t(i)];
+    if (!std::isfinite(table.values(i)))
+      table.failure =
+          fmt::format("{} is no finite number; leave it out, or take a function that has a value there", row);
+    for (Eigen::Index j = 0; j < table.derivatives.cols() && table.failure.empty(); ++j)
+      if (!std::isfinite(table.derivatives(i, j)))
+        table.failure =
+            fmt::format("{} has no finite derivative by {}; leave one of them out", row, table.columns[std::size_t(j)]);
   }
-  return row.back();
 }
 
 }  // namespace
@@ -178,104 +195,6 @@ void set_growth(GradientTable& table, double growth) {
   propagated.growth = std::max(1.0, growth);
   table.growth = propagated.growth;
   table.digits_left = propagated.digits_left();
-}
-
-/// That of what a row shows; rows of a group have one unit.
-std::string group_of_row(const GradientSubject& subject, const GradientTable& table, std::size_t row) {
-  const int column = table.event_rows.empty() ? table.observed[row] : table.event_rows[row].column;
-  return column < 0 ? "t" : subject.observed[std::size_t(column)].group;
-}
-
-constexpr double usual_size = 1e-2;
-/// The change of column j by which some group of rows changes by a hundredth of its largest value: the unit of a number
-/// that is zero.
-double size_by_what_it_does(const GradientSubject& subject, const GradientTable& table, Eigen::Index j) {
-  std::map<std::string, std::pair<double, double>> groups;  // the largest value, the largest derivative
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    auto& [value, slope] = groups[group_of_row(subject, table, i)];
-    value = std::max(value, std::abs(table.values(Eigen::Index(i))));
-    slope = std::max(slope, std::abs(table.derivatives(Eigen::Index(i), j)));
-  }
-  double size = std::numeric_limits<double>::infinity();
-  for (const auto& [group, largest] : groups)
-    if (largest.first > 0 && largest.second > 0) size = std::min(size, 1e-2 * largest.first / largest.second);
-  return std::isfinite(size) ? size : usual_size;
-}
-/// That of a number of the start, or a hundredth of the largest in its group: their unit is one. Zero where all are.
-double size_of_start(const GradientSubject& subject, std::size_t index) {
-  double largest = 0;
-  for (std::size_t i = 0; i < subject.start.size(); ++i)
-    if (subject.start[i].group == subject.start[index].group) largest = std::max(largest, std::abs(subject.sizes[i]));
-  return std::max(std::abs(subject.sizes[index]), 1e-2 * largest);
-}
-
-void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
-                              const std::function<std::optional<Eigen::VectorXd>(const std::vector<Nudge>&)>& values,
-                              const std::vector<double>& widths) {
-  table.differences.resize(table.derivatives.rows(), table.derivatives.cols());
-  Eigen::RowVectorXd sizes(table.derivatives.cols());
-  for (std::size_t j = 0; j < table.columns.size(); ++j) {
-    const bool of_start = j < columns.start.size();
-    const int index = of_start ? columns.start[j] : columns.parameters[j - columns.start.size()];
-    Nudge nudge;
-    if (of_start) {
-      nudge.index = index;
-    } else {
-      nudge.parameter = subject.parameters[std::size_t(index)].name;
-    }
-    const auto at = Eigen::Index(j);
-    sizes(at) = of_start ? size_of_start(subject, std::size_t(index))
-                         : std::abs(subject.sizes[subject.start.size() + std::size_t(index)]);
-    const auto nudged = [&](double by) {
-      nudge.by = by;
-      return values({nudge});
-    };
-    auto column = table.differences.col(at);
-    const auto exact = table.derivatives.col(at).array();
-    const auto compare = [&](double size) {
-      sizes(at) = size;
-      bool is_first = true;
-      for (const double width : widths)
-        if (const auto next = difference(nudged, width * size)) {
-          if (std::exchange(is_first, false)) column = *next;
-          column = ((next->array() - exact).abs() < (column.array() - exact).abs()).select(*next, column).eval();
-        }
-      return !is_first;
-    };
-    bool compared = sizes(at) != 0 && compare(sizes(at));
-    if (sizes(at) == 0) {
-      // A derivative that is rounding says nothing of sizes: as a whole no digit of it agrees then, by luck one
-      // number's.
-      compared = compare(size_by_what_it_does(subject, table, at)) &&
-                 (column.array() - exact).matrix().norm() < 0.1 * exact.matrix().norm();
-      compared = compared || compare(usual_size);
-    }
-    if (!compared)
-      throw GradientRefused(
-          fmt::format("--check: runs beside this one, from another {}, end early or have other events; leave it out",
-                      table.columns[j]));
-  }
-  // By how much a row changes where a number changes by its own size, beside what rounding is of differences that
-  // narrow.
-  std::map<std::string, double> rounding;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    double& most = rounding[group_of_row(subject, table, i)];
-    most = std::max(most, 1e-12 * std::abs(table.values(Eigen::Index(i))));
-  }
-  const Eigen::MatrixXd changes = table.derivatives * sizes.asDiagonal();
-  const Eigen::MatrixXd off = (table.derivatives - table.differences) * sizes.asDiagonal();
-  table.within_rounding = true;
-  double fewest = 16, of_rounding = 0;
-  for (Eigen::Index i = 0; i < off.rows(); ++i) {
-    const double most = off.row(i).cwiseAbs().maxCoeff(), size = changes.row(i).cwiseAbs().maxCoeff();
-    const double of_group = rounding[group_of_row(subject, table, std::size_t(i))];
-    const double least = of_group > 0 ? of_group : 1e-12 * table.values.cwiseAbs().maxCoeff();
-    if (least > 0) of_rounding = std::max(of_rounding, std::log10(std::max(1.0, size / least)));
-    if (most <= least) continue;
-    table.within_rounding = false;
-    fewest = std::min(fewest, std::max(0.0, std::log10(size / most)));
-  }
-  table.digits_agreed = table.within_rounding ? std::min(16.0, of_rounding) : fewest;
 }
 
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words) {
@@ -373,17 +292,16 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
   const auto width = Eigen::Index(out.columns.size());
   out.values.resize(Eigen::Index(count));
   out.derivatives.resize(Eigen::Index(count), width);
+  const RunGrowth growth(subject, sizes_of_run(subject));
   for (const auto& [place, rows] : places) {
-    const Observed observed = observed_at(place);
-    const Propagated found = propagated(subject, columns, observed, rows.size());
+    const auto [found, grew] = propagated(subject, columns, growth, observed_at(place), rows.size());
     out.steps_solved += found.steps_solved;
     out.states_kept = std::max(out.states_kept, found.states_kept);
     if (!found.converged()) {
       out.failure = found.message;
       return out;
     }
-    if (found.growth >= out.growth) out.digits_left = found.digits_left();
-    out.growth = std::max(out.growth, found.growth);
+    set_growth(out, std::max(out.growth, grew));
     for (const int row : rows) {
       const auto at = Eigen::Index(out.rows.size());
       out.rows.push_back(place + "." + subject.observed[std::size_t(row)].name);
@@ -392,27 +310,65 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
       out.derivatives.row(at) = found.derivatives.row(row);
     }
   }
-  if (check)
+  fail_where_not_finite(out);
+  if (check && out.failure.empty())
     compare_with_differences(subject, columns, out,
-                             [&](const std::vector<Nudge>& nudges) { return values_of(subject, out, nudges); });
+                             [&](const std::vector<Nudge>& nudges) { return values_of(subject, out, nudges); },
+                             {growth.sizes(), out.growth, subject.tolerance});
   return out;
 }
 
 std::string words_of_growth(const GradientTable& table) {
   std::string out = "\n";
   if (!table.of_boundary_value)
-    out += fmt::format("  derivatives grew {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
+    out += fmt::format("  errors grow {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
                        table.digits_left);
   for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
   return out;
 }
 
-std::string text_of(const GradientTable& table) {
-  std::string out = fmt::format("{}: exact derivatives of {} {} steps\n\n", table.system,
-                                table.of_boundary_value ? "the cost of a path of" : "a run of", table.steps);
+/// The first few of many.
+static std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t few = 5;
+  const std::vector<std::string> first(names.begin(), names.begin() + std::ptrdiff_t(std::min(few, names.size())));
+  const std::size_t more = names.size() - first.size();
+  return fmt::format("{}{}", fmt::join(first, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+static std::string words_of_differences(const GradientTable& table) {
+  std::string out;
+  const std::size_t all = table.rows.size() * table.columns.size();
+  if (table.untold.size() < all)
+    out += table.within_rounding
+               ? fmt::format(
+                     "  extrapolated differences of runs agree as far as they tell: their rounding leaves {:.1f} "
+                     "digits\n",
+                     table.digits_agreed)
+               : fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
+  if (!table.contradicted.empty())
+    out += fmt::format("  they contradict {} of {} derivatives: {}\n", table.contradicted.size(), all,
+                       some_of(table.contradicted));
+  if (!table.untold.empty())
+    out += fmt::format("  differences of runs cannot tell, by their rounding or where runs are far apart: {}\n",
+                       some_of(table.untold));
+  return out;
+}
+
+/// Of one function by many numbers, a line for each of these.
+static std::string lines_of_row(const GradientTable& table) {
+  std::size_t first = 0;
+  for (const std::string& column : table.columns) first = std::max(first, column.size() + 3);
+  std::string out = fmt::format("  {:{}}  {:>18}\n", "", first, table.rows.front());
+  out += fmt::format("  {:{}}  {:18.10g}\n", "value", first, table.values(0));
+  for (std::size_t j = 0; j < table.columns.size(); ++j)
+    out += fmt::format("  {:{}}  {:18.10g}\n", "by " + table.columns[j], first, table.derivatives(0, Eigen::Index(j)));
+  return out;
+}
+
+static std::string lines_of_rows(const GradientTable& table) {
   std::size_t first = 0;
   for (const std::string& row : table.rows) first = std::max(first, row.size());
-  out += fmt::format("  {:{}}  {:>18}", "", first, "value");
+  std::string out = fmt::format("  {:{}}  {:>18}", "", first, "value");
   std::vector<std::size_t> widths;
   for (const std::string& column : table.columns) {
     widths.push_back(std::max<std::size_t>(18, column.size() + 3));
@@ -426,14 +382,16 @@ std::string text_of(const GradientTable& table) {
       out += fmt::format("  {:{}.10g}", table.derivatives(row, Eigen::Index(j)), widths[j]);
     out += "\n";
   }
+  return out;
+}
+
+std::string text_of(const GradientTable& table) {
+  std::string out = fmt::format("{}: exact derivatives of {} {} steps\n\n", table.system,
+                                table.of_boundary_value ? "the cost of a path of" : "a run of", table.steps);
+  constexpr std::size_t many = 6;
+  out += table.rows.size() == 1 && table.columns.size() > many ? lines_of_row(table) : lines_of_rows(table);
   out += words_of_growth(table);
-  if (table.checked)
-    out += table.within_rounding
-               ? fmt::format(
-                     "  extrapolated differences of runs agree as far as they tell: their rounding leaves {:.1f} "
-                     "digits\n",
-                     table.digits_agreed)
-               : fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
+  if (table.checked) out += words_of_differences(table);
   return out;
 }
 
@@ -463,6 +421,8 @@ std::string json_of(const GradientTable& table) {
       out["differences"] = matrix(table.differences);
       out["digits_agreed"] = table.digits_agreed;
       out["within_rounding"] = table.within_rounding;
+      out["contradicted"] = table.contradicted;
+      out["untold"] = table.untold;
     }
   }
   return out.dump(2);

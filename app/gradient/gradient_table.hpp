@@ -8,7 +8,6 @@
 
 #include "gradient_subject.hpp"
 
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -36,19 +35,21 @@ struct GradientTable {
   std::vector<std::string> columns;  ///< initial.x, parameters.strength
   Eigen::VectorXd values;            ///< of the rows
   Eigen::MatrixXd derivatives;
-  double growth = 1;
+  double growth = 1;  ///< of errors of the start, whatever columns there are (checks/run_growth.hpp)
   double digits_left = 0;
   long steps_solved = 0;
   long states_kept = 0;
   bool checked = false;
-  Eigen::MatrixXd differences;        ///< extrapolated, of the program
-  double digits_agreed = 0;           ///< the fewest, to the largest of each row
-  bool within_rounding = false;       ///< whether all rows agree to the rounding of differences, which has these digits
-  std::string failure;                ///< of a run that ended early
-  std::vector<EventRow> event_rows;   ///< through events: what the rows are
-  std::vector<std::size_t> happened;  ///< through events: which, in their order
-  std::vector<std::string> notes;     ///< on them
-  bool of_boundary_value = false;     ///< its row is the cost
+  Eigen::MatrixXd differences;   ///< extrapolated, of the program
+  double digits_agreed = 0;      ///< the fewest, to the largest of each row
+  bool within_rounding = false;  ///< whether all rows agree to the rounding of differences, which has these digits
+  std::vector<std::string> contradicted;  ///< by differences, as `final.q by parameters.length`
+  std::vector<std::string> untold;        ///< of which differences tell nothing
+  std::string failure;                    ///< of a run that ended early
+  std::vector<EventRow> event_rows;       ///< through events: what the rows are
+  std::vector<std::size_t> happened;      ///< through events: which, in their order
+  std::vector<std::string> notes;         ///< on them
+  bool of_boundary_value = false;         ///< its row is the cost
 };
 
 /// The starts and the parameters that words initial.NAME and parameters.NAME choose, each once.
@@ -72,11 +73,6 @@ std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::s
 /// A table with its columns, still without rows.
 GradientTable table_of(const GradientSubject& subject, const std::vector<std::string>& by, bool check);
 void set_growth(GradientTable& table, double growth);
-/// Adds extrapolated differences of the rows, which `values` has of runs from starts that differ (none of those that
-/// cannot be compared): of several relative widths, at each entry those that agree best.
-void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
-                              const std::function<std::optional<Eigen::VectorXd>(const std::vector<Nudge>&)>& values,
-                              const std::vector<double>& widths = {2e-3});
 
 /// The rows of the table, one after another, of a run from a start that differs; none where it ended early.
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,

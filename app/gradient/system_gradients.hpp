@@ -22,6 +22,9 @@ std::optional<GradientSubject> poisson_gradient(const Section& scene);
 /// Of a scene of bodies, by equal steps of order 2, without events (SceneError).
 std::optional<GradientSubject> bodies_gradient(const Section& scene);
 
+/// Of a scene on spheres, without events (SceneError).
+std::optional<GradientSubject> spheres_gradient(const Section& scene);
+
 /// Of a scene that holds its formulas, without constraints and events (SceneError).
 std::optional<GradientSubject> formula_gradient(const Section& scene);
 

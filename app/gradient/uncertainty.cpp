@@ -56,7 +56,12 @@ Uncertainty::Sample sample(const GradientSubject& subject, const GradientTable& 
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(size, size);
   long counted = 0;
   for (; out.runs < draws.count; ++out.runs) {
-    const auto values = values_of(subject, table, nudges_of(subject, errors, drawn(root, stream, out.runs)));
+    const std::vector<Nudge> nudges = nudges_of(subject, errors, drawn(root, stream, out.runs));
+    if (subject.refusal && !subject.refusal(nudges).empty()) {
+      ++out.refused;
+      continue;
+    }
+    const auto values = values_of(subject, table, nudges);
     if (!values || !values->allFinite()) {
       ++out.failed;
       continue;
@@ -65,7 +70,9 @@ Uncertainty::Sample sample(const GradientSubject& subject, const GradientTable& 
     mean += off / double(++counted);
     products += off * (*values - table.values - mean).transpose();
   }
-  if (counted < 2) throw GradientRefused("fewer than two of the runs that were drawn came to their end");
+  if (counted < 2)
+    throw GradientRefused(fmt::format(
+        "fewer than two of the runs that were drawn came to their end; scenes refuse {} of {}", out.refused, out.runs));
   out.mean = table.values + mean;
   out.covariance = products / double(counted - 1);
   return out;
@@ -83,6 +90,22 @@ double correlation(const Eigen::MatrixXd& covariance, Eigen::Index i, Eigen::Ind
 double share(const Uncertainty& u, Eigen::Index row, Eigen::Index column) {
   const double part = u.table.derivatives(row, column) * deviation_at(u.errors.covariance, column);
   return u.covariance(row, row) > 0 ? part * part / u.covariance(row, row) : 0;
+}
+
+/// Throws DataError for what is the covariance of nothing.
+void require_covariance(const Eigen::MatrixXd& c, const std::string& file) {
+  const auto refuse = [&](const char* what) {
+    throw DataError(fmt::format("{}: its covariance {}; write it by lagroid fit --json", file, what));
+  };
+  const Eigen::VectorXd variances = c.diagonal();
+  if (!c.allFinite() || !(variances.minCoeff() >= 0)) refuse("has a variance that is negative or no number");
+  constexpr double rounding = 1e-9;
+  const Eigen::VectorXd sizes =
+      variances.unaryExpr([](double variance) { return variance > 0 ? std::sqrt(variance) : 1.0; });
+  const Eigen::MatrixXd correlations = sizes.cwiseInverse().asDiagonal() * c * sizes.cwiseInverse().asDiagonal();
+  if (!((correlations - correlations.transpose()).cwiseAbs().maxCoeff() <= rounding)) refuse("is not symmetric");
+  if (!(symmetric_eigenvectors(correlations).values.minCoeff() >= -rounding * double(c.rows())))
+    refuse("has a combination of negative variance");
 }
 
 }  // namespace
@@ -128,22 +151,39 @@ InputErrors fitted_errors(const std::string& file) {
     for (const auto& unknown : fit.at("unknowns")) {
       out.names.push_back(unknown.at("name").get<std::string>());
       out.values.push_back(unknown.at("value").get<double>());
+      if (out.names.back().find(" of run ") != std::string::npos)
+        throw DataError(
+            fmt::format("{}: {} is one start among several, and a prediction has one; fit one run, or "
+                        "parameters alone",
+                        file, out.names.back()));
+      if (unknown.value("at_bound", false))
+        throw DataError(fmt::format("{}: {} ended at its bound, where errors are not normal ones; fit without it", file,
+                                    out.names.back()));
       if (unknown.at("deviation").is_null())
-        throw DataError(fmt::format("{}: {} is not told by its data; fit fewer unknowns", file, out.names.back()));
+        throw DataError(
+            fit.contains("scale") && fit.at("scale").is_null()
+                ? fmt::format("{}: of as many numbers as unknowns errors are not known; give --sigma", file)
+                : fmt::format("{}: {} is not told by its data; fit fewer unknowns", file, out.names.back()));
     }
     const auto n = Eigen::Index(out.names.size());
     out.covariance.resize(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index k = 0; k < n; ++k)
         out.covariance(i, k) = fit.at("covariance").at(std::size_t(i)).at(std::size_t(k)).get<double>();
+    out.system = fit.at("system").get<std::string>();
   } catch (const nlohmann::json::exception&) {
     throw DataError(fmt::format("{}: it has no unknowns with their covariance; write it by lagroid fit --json", file));
   }
+  if (out.names.empty()) throw DataError(fmt::format("{}: it has no unknowns; write it by lagroid fit --json", file));
+  require_covariance(out.covariance, file);
   return out;
 }
 
 GradientSubject moved_to(const GradientSubject& subject, const InputErrors& errors) {
   if (errors.values.empty()) return subject;
+  if (errors.system != subject.system)
+    throw GradientRefused(
+        fmt::format("--covariance: what was fitted is {}, and the scene is one of {}", errors.system, subject.system));
   GradientSubject out = subject;
   std::vector<Nudge> offsets;
   for (std::size_t j = 0; j < errors.names.size(); ++j) {
@@ -165,6 +205,11 @@ GradientSubject moved_to(const GradientSubject& subject, const InputErrors& erro
   out.begin = [=](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
     return subject.begin(parameters, and_offsets(nudges));
   };
+  if (subject.refusal) {
+    out.refusal = [=](const std::vector<Nudge>& nudges) { return subject.refusal(and_offsets(nudges)); };
+    if (const std::string why = out.refusal({}); !why.empty())
+      throw GradientRefused(fmt::format("--covariance: a scene with what was fitted is refused: {}", why));
+  }
   if (subject.begun_by)
     out.begun_by = [=](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
       return subject.begun_by(parameters, and_offsets(nudges));
@@ -224,10 +269,14 @@ std::string text_of(const Uncertainty& u) {
   }
   out += words_of_growth(table);
   if (u.sample) {
-    const double counted = double(u.sample->runs - u.sample->failed);
-    out += fmt::format("  {} runs were drawn{}; their deviations are known to {:.2g} %\n", u.sample->runs,
-                       u.sample->failed > 0 ? fmt::format(", {} of which ended early", u.sample->failed) : "",
-                       100 / std::sqrt(2 * (counted - 1)));
+    const double counted = double(u.sample->runs - u.sample->failed - u.sample->refused);
+    out += fmt::format(
+        "  {} runs were drawn{}{}; their deviations are known to {:.2g} %\n", u.sample->runs,
+        u.sample->failed > 0 ? fmt::format(", {} of which ended early", u.sample->failed) : "",
+        u.sample->refused > 0
+            ? fmt::format(", {} of which have numbers that scenes refuse and do not count", u.sample->refused)
+            : "",
+        100 / std::sqrt(2 * (counted - 1)));
   }
   return out;
 }
@@ -247,6 +296,7 @@ std::string json_of(const Uncertainty& u) {
   if (u.sample)
     out["draws"] = {{"runs", u.sample->runs},
                     {"failed", u.sample->failed},
+                    {"refused", u.sample->refused},
                     {"mean", vector(u.sample->mean)},
                     {"covariance", matrix(u.sample->covariance)}};
   return out.dump(2);

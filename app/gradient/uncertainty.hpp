@@ -10,8 +10,9 @@
 ///     const InputErrors errors = independent_errors(subject, {"initial.momentum=0.01"});
 ///     const Uncertainty end = uncertainty_of(subject, {"final"}, errors, {});
 ///
-/// Errors: GradientRefused, one line, for what has no derivative, no such name or no deviation; DataError for a file
-/// that no fit has written, or whose data did not tell an unknown.
+/// Errors: GradientRefused, one line, for what has no derivative, no such name or no deviation, and for what was fitted
+/// of another system; DataError for a file that no fit has written, with no covariance, or whose data did not tell an
+/// unknown.
 
 #include "gradient_table.hpp"
 
@@ -28,6 +29,7 @@ struct InputErrors {
   Eigen::MatrixXd covariance;
   bool are_independent = true;
   std::vector<double> values = {};      ///< what was fitted, in place of what the scene has
+  std::string system = {};              ///< of which it was
   std::vector<std::string> notes = {};  ///< on numbers of a group that have none
 };
 /// Of words NAME=SIGMA, where NAME may be a group: each number of it has that deviation.
@@ -50,7 +52,8 @@ struct Uncertainty {
   /// The same of runs that were drawn.
   struct Sample {
     long runs = 0;
-    long failed = 0;  ///< of these, which ended early and do not count
+    long failed = 0;   ///< of these, which ended early and do not count
+    long refused = 0;  ///< of these, whose numbers no scene may have, as a negative length, and which do not count
     Eigen::VectorXd mean;
     Eigen::MatrixXd covariance;
   };

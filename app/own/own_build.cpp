@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 struct Recipe {
   std::string compiler;
   std::vector<std::string> flags;
+  std::vector<std::string> preprocessing;
   std::vector<std::string> archives;   ///< of lagroid
   std::vector<std::string> libraries;  ///< of others
   std::vector<std::string> libraries_of_laws;
@@ -61,6 +62,7 @@ Recipe recipe() {
     Recipe out;
     json.at("compiler").get_to(out.compiler);
     json.at("flags").get_to(out.flags);
+    json.at("preprocessing").get_to(out.preprocessing);
     json.at("archives").get_to(out.archives);
     json.at("libraries").get_to(out.libraries);
     json.at("libraries of laws").get_to(out.libraries_of_laws);
@@ -181,7 +183,8 @@ fs::path built_from(const fs::path& source, OwnPart part, const std::function<vo
   const fs::path log = scratch.path / "log";
 
   std::vector<std::string> preprocess = words;
-  preprocess.insert(preprocess.end(), {"-E", file});
+  preprocess.insert(preprocess.end(), how.preprocessing.begin(), how.preprocessing.end());
+  preprocess.push_back(file);
   const fs::path text = scratch.path / "text";
   compile(preprocess, text, log, source);
   std::string key = contents(text).value_or("");

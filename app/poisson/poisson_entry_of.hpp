@@ -10,6 +10,7 @@
 #include "poisson_entry.hpp"
 
 #include <lagroid/core/derivatives/varied_directions.hpp>
+#include <lagroid/run/motion/parameter_values.hpp>
 #include <lagroid/solvers/poisson/poisson_methods.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 
@@ -62,6 +63,9 @@ template <class Sys> class PoissonSystemOf final : public AnyPoissonSystem {
   }
   std::string refusal(const std::vector<double>& x) const override {
     const X at = point(x);
+    Sys own = system_;
+    if (const std::string why = set_parameters(own, parameter_values(own)); !why.empty())
+      return "is of no system: " + why;
     if (!system_.contains(at)) return "is outside of where bracket and energy are smooth";
     if (const std::string why = refused_by_the_system(at); !why.empty()) return why;
     if (const std::string what = contradicted_at(at); !what.empty())

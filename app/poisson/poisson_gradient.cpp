@@ -23,6 +23,23 @@ NodeValues observed(const AnyPoissonSystem& system, const std::vector<double>& x
   return out;
 }
 
+/// The system and its start, which differ so from those that were read.
+struct NudgedPoisson {
+  std::shared_ptr<const AnyPoissonSystem> system;
+  std::vector<double> start;
+};
+NudgedPoisson nudged(const PoissonToCheck& asked, const std::vector<Nudge>& nudges) {
+  NudgedPoisson out{asked.system, asked.start};
+  for (const Nudge& nudge : nudges) {
+    if (nudge.parameter.empty()) {
+      out.start[std::size_t(nudge.index)] += nudge.by;
+    } else {
+      out.system = out.system->changed(nudge.parameter, nudge.by);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<GradientSubject> poisson_gradient(const Section& scene) {
@@ -45,18 +62,15 @@ std::optional<GradientSubject> poisson_gradient(const Section& scene) {
   }
   out.begin = [asked = read.to_check](const std::vector<std::string>& parameters,
                                       const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {
-    std::shared_ptr<const AnyPoissonSystem> system = asked.system;
-    std::vector<double> start = asked.start;
-    for (const Nudge& nudge : nudges) {
-      if (nudge.parameter.empty()) {
-        start[std::size_t(nudge.index)] += nudge.by;
-      } else {
-        system = system->changed(nudge.parameter, nudge.by);
-      }
-    }
+    const auto [system, start] = nudged(asked, nudges);
     return std::make_unique<LinearisedPoissonMotion>(
         system->begin(start, asked.options), parameters,
-        [system, parameters](const std::vector<double>& x) { return observed(*system, x, parameters); });
+        [system = system, parameters](const std::vector<double>& x) { return observed(*system, x, parameters); });
+  };
+  out.refusal = [asked = read.to_check](const std::vector<Nudge>& nudges) {
+    const auto [system, start] = nudged(asked, nudges);
+    const std::string why = system->refusal(start);
+    return why.empty() ? why : "the start " + why;
   };
   find_refused(out);
   return out;

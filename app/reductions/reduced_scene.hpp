@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -57,11 +58,20 @@ PreparedScene<Sys> simulation_reduced_by(const Declared& declared, const Section
     drive(*motion(stepped, observer), reached, context, result);
     return result;
   };
+  const auto reduced = [=](const Sys& stepped, const State<typename Sys::GroupoidType>& from,
+                           const ArrowOf<typename Sys::GroupoidType>& reached) -> std::unique_ptr<Integrator<Sys>> {
+    const Down there(declared, stepped, from, reached);
+    if (const DescentReport found = examine_reduction(there, arrows); !found.descends())
+      throw std::invalid_argument(
+          fmt::format("\"{}\" is no symmetry of such a system: {}", declared.name, found.sentence()));
+    return std::make_unique<ReducedIntegrator<Sys, Declared>>(there, choice.options);
+  };
   return {system,
           run,
           [=] { return motion(system, nullptr); },
           integration_methods(able),
-          nullptr,
+          std::make_shared<const StatedInitialValue<Sys>>(
+              StatedInitialValue<Sys>{initial, configuration, presentation, choice, extent, reduced}),
           std::string(declared.name)};
 }
 

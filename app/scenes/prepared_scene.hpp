@@ -18,7 +18,7 @@
 
 namespace lagroid::app {
 
-/// An initial value by steps whose derivatives are known, as gradients and ensembles take them (simulation.hpp).
+/// An initial value as gradients and ensembles take it (simulation.hpp).
 template <DiscreteSystem Sys> struct StatedInitialValue;
 
 template <DiscreteSystem Sys> struct PreparedScene {

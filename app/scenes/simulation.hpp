@@ -21,6 +21,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -83,22 +84,6 @@ std::vector<Event> read_events(const Section& scene);
 /// How far a run of steps goes and what it leaves: [time] steps, [output] every and checkpoint, [[event]].
 RunExtent read_extent(const Section& scene, const RunContext& context);
 
-/// An initial value by steps whose derivatives are known: those that Newton's iteration solves to round-off, equal
-/// ones, each perhaps composed, or ones whose size is an unknown; and splittings.
-template <DiscreteSystem Sys> struct StatedInitialValue {
-  State<typename Sys::GroupoidType> initial;
-  ArrowOf<typename Sys::GroupoidType> configuration;
-  Presentation<Sys> presentation;
-  IntegratorChoice choice;
-  RunExtent extent;
-  /// Whether the scene sets nothing of its steps beyond their size and number, and watches for nothing.
-  bool is_plain() const {
-    const IntegratorOptions& o = choice.options;
-    return o.mode == TimeMode::fixed && o.fixed == StepKind::variational && o.composition.stages() == 1 &&
-           choice.accuracy == 0 && extent.events.empty();
-  }
-};
-
 /// Whether the scene sets nothing of the solver, which solves each step.
 inline bool solved_by_newton(const IntegratorChoice& choice) {
   const IntegratorOptions& o = choice.options;
@@ -107,13 +92,28 @@ inline bool solved_by_newton(const IntegratorChoice& choice) {
   return (o.mode == TimeMode::fixed || vary) && o.fixed == StepKind::variational && o.method == StepMethod::newton &&
          o.step.tolerance == 0 && o.step.max_iterations == IntegratorOptions().step.max_iterations;
 }
-inline bool by_splitting(const IntegratorChoice& choice) {
-  return choice.options.mode == TimeMode::fixed && choice.options.fixed == StepKind::splitting;
-}
 /// Whether Newton's iteration solves equal steps of a given size.
 inline bool by_newton_steps(const IntegratorChoice& choice) {
   return choice.options.mode == TimeMode::fixed && choice.accuracy == 0 && solved_by_newton(choice);
 }
+
+/// An initial value as a scene states it.
+template <DiscreteSystem Sys> struct StatedInitialValue {
+  using G = typename Sys::GroupoidType;
+  State<G> initial;
+  ArrowOf<G> configuration;
+  Presentation<Sys> presentation;
+  IntegratorChoice choice;
+  RunExtent extent;
+  /// Of a reduced run, its integrator for a system like this one from another start; null of any other. Throws
+  /// std::invalid_argument where what the scene reduces by is no symmetry of that system.
+  std::function<std::unique_ptr<Integrator<Sys>>(const Sys&, const State<G>& initial, const ArrowOf<G>& configuration)>
+      reduced = nullptr;
+  /// Whether the scene sets nothing of its steps beyond their size and number, and watches for nothing.
+  bool is_plain() const {
+    return by_newton_steps(choice) && choice.options.composition.stages() == 1 && !reduced && extent.events.empty();
+  }
+};
 
 /// The system's motion as the scene specifies it.
 template <DiscreteSystem Sys>
@@ -176,16 +176,14 @@ PreparedScene<Sys> simulation(const Section& scene, const RunContext& context, c
   const IntegratorChoice choice = read_integrator(scene, able);
   const RunExtent extent = read_extent(scene, context);
   scene.finish();
-  std::shared_ptr<const StatedInitialValue<Sys>> stated;
-  if (solved_by_newton(choice) || by_splitting(choice))
-    stated = std::make_shared<const StatedInitialValue<Sys>>(
-        StatedInitialValue<Sys>{initial, configuration, presentation, choice, extent});
   return {system,
           [=](const Observer<Sys>& observer) {
             return simulate(system, presentation, initial, configuration, choice, extent, context, observer);
           },
           [=] { return motion_of(system, presentation, initial, configuration, choice.options); },
-          integration_methods(able), stated};
+          integration_methods(able),
+          std::make_shared<const StatedInitialValue<Sys>>(
+              StatedInitialValue<Sys>{initial, configuration, presentation, choice, extent})};
 }
 
 }  // namespace lagroid::app

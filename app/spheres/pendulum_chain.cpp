@@ -2,8 +2,6 @@
 
 #include "../reading/kinds.hpp"
 
-#include <lagroid/systems/pendulums/pendulum_chain.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +18,8 @@ using Chain = PendulumChain<Eigen::Dynamic>;
 class ChainSystem final : public SphereSystem {
  public:
   explicit ChainSystem(Chain chain) : chain_(std::move(chain)) {}
+
+  const Chain& chain() const { return chain_; }
 
   std::string_view name() const override { return keys::pendulum_chain; }
   std::vector<SphereForm> forms() const override { return pendulum_chain_forms; }
@@ -111,7 +111,14 @@ std::unique_ptr<SphereSystem> read_pendulum_chain(const Section& scene) {
     if constexpr (is_for_each_link<decltype(p)>)
       if ((given.*p.member).size() == 0) given.*p.member = Numbers::Constant(links, parameters.number(p.name, p.rule));
   });
-  return std::make_unique<ChainSystem>(Chain(given.mass, given.length, given.gravity));
+  return system_of({given.mass, given.length, given.gravity});
+}
+
+std::unique_ptr<SphereSystem> system_of(Chain chain) { return std::make_unique<ChainSystem>(std::move(chain)); }
+
+const Chain* chain_of(const SphereSystem& system) {
+  const auto* of_chain = dynamic_cast<const ChainSystem*>(&system);
+  return of_chain == nullptr ? nullptr : &of_chain->chain();
 }
 
 }  // namespace lagroid::app

@@ -103,7 +103,7 @@ Table sphere_start_table(const std::vector<SphereForm>& forms) {
   return table;
 }
 
-Points read_start(const Section& scene, const SphereSystem& system, SphereForm form) {
+GivenSphereStart read_given_start(const Section& scene, const SphereSystem& system, SphereForm form) {
   const int count = system.count();
   const Section initial = scene.section("initial", "directions and angular velocities or momenta");
   const auto q = read_directions(scene, initial, count);
@@ -134,7 +134,12 @@ Points read_start(const Section& scene, const SphereSystem& system, SphereForm f
   }
   Points z(6, count);
   for (int i = 0; i < count; ++i) AnySpheres::set(z, i, q[std::size_t(i)], moving[std::size_t(i)]);
-  z = system.in_form(z, given, form);
+  return {std::move(z), given};
+}
+
+Points read_start(const Section& scene, const SphereSystem& system, SphereForm form) {
+  const GivenSphereStart given = read_given_start(scene, system, form);
+  Points z = system.in_form(given.z, given.form, form);
   const auto measured = system.measure(z, form);
   const auto finite = [](const Measured& m) { return std::isfinite(m.value) && std::isfinite(m.size); };
   if (!z.allFinite() || !std::all_of(measured.begin(), measured.end(), finite))

@@ -52,7 +52,6 @@ template <DiscreteSystem Sys> class Reconstruction<Sys, Unreduced> {
   ArrowOf<G> arrow_below(const ArrowOf<G>& g) const { return g; }
   DescentReport examine(std::span<const ArrowOf<G>>) const { return {}; }
   TrajectoryPoint<Sys> full(const TrajectoryPoint<Below>& point) const { return point; }
-  Step<Sys> full_step(const Step<Below>& step, double) const { return step; }
 
  private:
   Sys system_;
@@ -126,10 +125,6 @@ template <DiscreteSystem Sys, class Phi> class Reconstruction<Sys, Reduction<Phi
 
   void join(const Step<Below>&, double) {}
   TrajectoryPoint<Sys> full(const TrajectoryPoint<Below>& point) const { return full_point(system_, point, start_); }
-  /// An arrow over one of a step, with the same constraints.
-  Step<Sys> full_step(const Step<Below>& step, double) const {
-    return {representative_of(system_.morphism, step.arrow), step.multipliers};
-  }
   void serialize(NumberArchive&) {}
 
  private:
@@ -211,11 +206,6 @@ class Reconstruction<Sys, FixedMomentum<Connection, First>> {
     out.configuration = lifted_;
     out.step = {step_, point.step.multipliers};
     return upper_.full(out);
-  }
-  Step<Sys> full_step(const Step<Below>& step, double size) const {
-    Below there = system_;
-    set_time_step(there, size);
-    return upper_.full_step(above(there, step), size);
   }
   const Phases& phases() const { return phases_; }
   void serialize(NumberArchive& archive) {

@@ -83,6 +83,7 @@ class GradientTable(NamedTuple):
     differences: Optional[NDArray[np.float64]]
     digits_agreed: Optional[float]
     notes: list[str]
+    contradicted: Sequence[str] = ()  # by differences, as "final.q by parameters.length"
 
 
 def gradient(
@@ -97,7 +98,8 @@ def gradient(
     """The derivatives of a scene's run by its start and its parameters, exact, by the program lagroid-gradient
     (docs/gradients.md): `of` what, as "final.position", "node.10.px", "integral.x" or, through the scene's events,
     "event.floor.1.t", and `wrt` what, as "initial.momentum" or "parameters.strength". `columns`: more columns of the run,
-    as {"w1": "M1 / parameters.inertia.0"}. `check` compares with extrapolated differences of runs. Raises
+    as {"w1": "M1 / parameters.inertia.0"}. `check` compares with extrapolated differences of runs, and names
+    what they contradict. Raises
     ProgramError where the program is missing, SceneError where it refuses, SolveError where a step of the run fails."""
     arguments = ["--of", ",".join(of), "--wrt", ",".join(wrt), *repeated("--column", columns)]
     arguments += ["--check"] if check else []
@@ -115,6 +117,7 @@ def gradient(
         None if differences is None else np.array(differences),
         found.get("digits_agreed"),
         found.get("notes", []),
+        found.get("contradicted", []),
     )
 
 
@@ -175,7 +178,7 @@ def uncertainty(
 
 def fit(
     scene: SceneLike,
-    data: Sequence[str | os.PathLike[str]],
+    data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     wrt: Sequence[str],
     *,
     of: Sequence[str] = (),
@@ -192,13 +195,13 @@ def fit(
     """Parameters and starts of a scene from measured columns, as `lagroid fit --json` tells them (docs/fit.md):
     "unknowns", "covariance", "undetermined" and more.
 
-    `data`: CSV or HDF5 files, one for each run, with `t` and columns of the run; empty fields and NaN are gaps. `wrt`: what
+    `data`: a CSV or HDF5 file, or one for each run, with `t` and columns of the run; empty fields and NaN are gaps. `wrt`: what
     is fitted, as "initial.momentum" or "parameters.length". `of`: the columns that are used, all by default. `columns`:
     more columns of the run, as {"w1": "M1 / parameters.inertia.0"}, and `combinations` functions of unknowns that are
     to be told, as {"ratio": "parameters.inertia.1 / parameters.inertia.0"}. `sigma`: deviations of their errors, 1 by default. `bounds`: of what is fitted. `huber`: beyond so many sigma a residual
     weighs by its size. `starts`: guesses, others than the scene's being drawn around it by `spread`. Raises what
     `gradient` raises, and SolveError where no run comes to its end."""
-    files = [os.fspath(each) for each in data]
+    files = [os.fspath(each) for each in ([data] if isinstance(data, (str, os.PathLike)) else data)]
     arguments = [*files, "--wrt", ",".join(wrt), *repeated("--column", columns), *repeated("--combination", combinations)]
     if of:
         arguments += ["--of", ",".join(of)]

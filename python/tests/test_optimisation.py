@@ -162,7 +162,9 @@ class Control(unittest.TestCase):
         way = lagroid.control(EXAMPLES / "control/shortest_way.toml", set={"horizon.stages": 60})
         self.assertTrue(way.converged, way.message)
         self.assertEqual((way.states.shape, way.controls.shape, way.times.shape), ((61, 3), (60, 1), (61,)))
-        self.assertEqual(way.costates.shape[0], 60)
+        self.assertEqual(way.costates.shape, (60, len(way.costate_names)))
+        self.assertEqual((way.costate_names, way.costate_units), (["M", "p1", "p2"], ["s/rad", "s/m", "s/m"]))
+        self.assertEqual((way.state_units, way.control_units), (["m", "m", "rad"], ["1/m"]))
         self.assertAlmostEqual(way.cost, way.duration, places=12)
         self.assertAlmostEqual(way.cost, float(way.times[-1]), places=12)
         self.assertEqual(way.costs[0], way.cost)
@@ -181,6 +183,13 @@ class Control(unittest.TestCase):
         self.assertAlmostEqual(angle, 0, places=9)
         self.assertAlmostEqual(np.hypot(way.states[-1][0] - 6, way.states[-1][1] - 3), 1, places=9)
         self.assertEqual(lagroid.control(EXAMPLES / "control/shortest_way.toml", set={"solver.starts": 1}).phases, {})
+
+    def test_one_side(self) -> None:
+        """A bound on one side alone: the stop of a mass that can only be pushed back so hard."""
+        bounds = {"bounds.u": {"min": -1.0}, "parameters.cost": "effort", "horizon.free": False, "horizon.duration": 3.0}
+        found = lagroid.control(EXAMPLES / "control/fastest_stop.toml", set={**bounds, "horizon.stages": 40})
+        self.assertTrue(found.converged, found.message)
+        self.assertGreaterEqual(found.controls.min(), -1 - 1e-9)
 
     def test_no_way(self) -> None:
         """A mass that cannot stop in time."""

@@ -143,7 +143,15 @@ class Studies(unittest.TestCase):
                 sigma={"x": 0.1},
                 bounds={"parameters.strength": (0.5, 2.0)},
             )
+            one = lagroid.fit(
+                EXAMPLES / "kepler.toml",
+                Path("a.csv"),
+                ["initial"],
+                sigma={"x": 0.1},
+                bounds={"parameters.strength": (0.5, 2.0)},
+            )
         self.assertEqual(found["unknowns"][0]["value"], 1.5)
+        self.assertEqual(one, found, "a single file needs no list")
         with stand_in("LAGROID_GRADIENT", 'echo \'{"status": "failed", "message": "run 1 fails"}\'\nexit 3\n'):
             with self.assertRaisesRegex(lagroid.SolveError, "run 1 fails"):
                 lagroid.fit(EXAMPLES / "kepler.toml", ["a.csv"], ["initial"])

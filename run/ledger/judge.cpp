@@ -16,6 +16,7 @@ void Judge::observe(const Observables& node) {
   const double noise = node.noise();
   for (std::size_t i = 0; i < quantities_.size(); ++i) {
     if (quantities_[i].on_arrows && node.index() == 0) continue;
+    if (!node.quantities()[i].is_promised) quantities_[i].is_promised = false;
     double size = node.measure(i, values_[i].data());
     if (quantities_[i].size_of == SizeOf::value) size = norm_of(values_[i]);
     watches_[i].observe(values_[i].data(), size, noise * size);

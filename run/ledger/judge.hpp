@@ -5,7 +5,8 @@
 ///     while (motion.advance().converged()) judge.observe(motion.look());
 ///     judge.report(result.ledger);
 ///
-/// Requires that all nodes have the same quantities. Nothing throws.
+/// Requires that all nodes have the same quantities. One that is promised no more at a node is watched, not judged.
+/// Nothing throws.
 
 #include <lagroid/run/ledger/ledger.hpp>
 #include <lagroid/run/motion/observables.hpp>

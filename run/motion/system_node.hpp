@@ -90,13 +90,20 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
     }
   }
 
-  /// The system has become another, and its quantities with it; what is summed up over steps stays as it was.
+  /// The system has become another, and its quantities with it; what is summed up over steps stays as it was. Of a
+  /// quantity that it has no more, as its symmetry is gone, nothing is promised from there.
   template <class Change> void change(const Change& how, const std::vector<Quantity<Sys>>& quantities) {
     how(system_);
     how(arrow_system_);
-    for (std::size_t i = 0; i < quantities_.size(); ++i)
-      for (const Quantity<Sys>& changed : quantities)
-        if (changed.name == quantities_[i].name && !watched_[i].adds_up) quantities_[i] = changed;
+    for (std::size_t i = 0; i < quantities_.size(); ++i) {
+      if (watched_[i].adds_up) continue;
+      const auto changed =
+          std::ranges::find_if(quantities, [&](const Quantity<Sys>& q) { return q.name == quantities_[i].name; });
+      if (changed != quantities.end())
+        quantities_[i] = *changed;
+      else
+        watched_[i].is_promised = false;
+    }
   }
 
   const Point& point() const { return point_; }

@@ -24,8 +24,8 @@
 /// `not_finite`, `not_converged` where a node takes more than a million steps; all leave everything as it was. The
 /// report counts Strang steps. (Gragg 1965; Deuflhard 1983; Hairer, Norsett, Wanner, Solving ODEs I, II.9 and II.14.)
 
-#include <lagroid/core/derivatives/two_sided.hpp>
 #include <lagroid/solvers/extrapolation/extrapolation_table.hpp>
+#include <lagroid/solvers/extrapolation/onto_object_constraints.hpp>
 #include <lagroid/solvers/extrapolation/row_register.hpp>
 #include <lagroid/solvers/generating/constrained_momentum.hpp>
 #include <lagroid/solvers/integrators/integrator.hpp>
@@ -43,6 +43,12 @@
 #include <vector>
 
 namespace lagroid {
+
+/// A step on the way to the next node.
+struct InnerStep {
+  double size;
+  int rows;  ///< of the table that was extrapolated
+};
 
 template <SplitSystem Sys> class ExtrapolatedSplitting {
  public:
@@ -67,6 +73,10 @@ template <SplitSystem Sys> class ExtrapolatedSplitting {
 
   /// To the next node.
   StepReport advance() {
+    return advance([](const InnerStep&) {});
+  }
+  /// The same, which tells the inner steps that it makes.
+  template <class Visit> StepReport advance(const Visit& visit) {
     const auto kept = std::make_tuple(trajectory_, order_.memory(), next_, place_size_, momentum_size_);
     StepReport report;
     const double node = std::abs(system_.h);
@@ -74,10 +84,14 @@ template <SplitSystem Sys> class ExtrapolatedSplitting {
     for (long tried = 1; gone < node; ++tried) {
       const double left = node - gone;
       const double step = detail::step_on_the_way(next_, left);
-      const StepAttempt attempt = try_step(std::copysign(step, system_.h));
+      const InnerStep inner{std::copysign(step, system_.h), order_.table().rows};
+      const StepAttempt attempt = try_step(inner.size);
       report.iterations += attempt.evaluations;
       next_ = std::min(detail::size_after(attempt, step, next_), node);
-      if (attempt.accepted) gone = step == left ? node : gone + step;
+      if (attempt.accepted) {
+        gone = step == left ? node : gone + step;
+        visit(inner);
+      }
       const bool too_many = tried >= most_inner_steps && gone < node;
       if (!too_many && (attempt.accepted || gone + next_ > gone)) continue;
       report.status = too_many         ? SolveStatus::not_converged
@@ -159,7 +173,11 @@ template <SplitSystem Sys> class ExtrapolatedSplitting {
                      Sys::Multipliers::Zero()};
     solution.momentum_change = change[0];
     solution.remainder = remainders_.leftCols(table.rows) * table.weights.col(0);
-    if constexpr (Sys::object_constraints > 0) onto_constraints(from, solution);
+    if constexpr (Sys::object_constraints > 0) {
+      onto_object_constraints<double>(system_, solution.step.arrow);
+      const State<G> off{groupoid.target(solution.step.arrow), from.momentum + solution.momentum_change};
+      solution.momentum_change = tangent_momentum(system_, off) - from.momentum;
+    }
     trajectory_.join(groupoid, solution);
     measure(point().state.momentum);
     return {true, true, verdict.next, strang_steps};
@@ -190,20 +208,6 @@ template <SplitSystem Sys> class ExtrapolatedSplitting {
       rows.begin_again(begun, [&](const S& a, const S& b) { return Register::choose(slot->others, a, b); });
       rows.template follow<0>(of_lanes((slot + 1)->step) * Register::load(slot->others) * 0.5);
     }
-  }
-
-  /// Takes off what extrapolation leaves across object constraints and their tangent momenta: an error of the step.
-  void onto_constraints(const State<G>& from, StepSolution<Sys>& solution) const requires(Sys::object_constraints > 0) {
-    const G& groupoid = system_.groupoid;
-    ArrowOf<G>& arrow = solution.step.arrow;
-    const ObjectOf<G> reached = groupoid.target(arrow);
-    const auto d = two_sided(system_, groupoid.unit(reached), Sys::Multipliers::Zero().eval());
-    const auto gradients = d.constraint_source.template rightCols<Sys::object_constraints>().eval();
-    const auto values = d.constraint.template tail<Sys::object_constraints>().eval();
-    const Momentum back = gradients * (gradients.transpose() * gradients).ldlt().solve(-values);
-    arrow = groupoid.compose(arrow, groupoid.tau(reached, back));
-    const State<G> off{groupoid.target(arrow), from.momentum + solution.momentum_change};
-    solution.momentum_change = tangent_momentum(system_, off) - from.momentum;
   }
 
   Sys system_;

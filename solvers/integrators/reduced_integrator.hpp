@@ -26,11 +26,17 @@ template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : pu
       : down_(down),
         below_(make_integrator(down.system(), down.initial(), down.configuration(), options)),
         is_one_arrow_(options.composition.stages() == 1),
+        before_(down_),
         kept_(down_),
         point_(down_.full(below_->point())),
-        kept_point_(point_) {}
+        kept_point_(point_),
+        point_before_(below_->point()) {}
 
   StepReport advance() override {
+    if (!is_one_arrow_) {
+      before_ = down_;
+      point_before_ = below_->point();
+    }
     const StepReport report = below_->advance();
     if (!report.converged()) return report;
     below_->for_each_inner_stage([&](const Step<Below>& step, double, double size) { down_.join(step, size); });
@@ -40,10 +46,22 @@ template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : pu
   }
   const TrajectoryPoint<Sys>& point() const override { return point_; }
   MethodTraits traits() const override { return below_->traits(); }
+  /// Each is lifted from where the one before it ends.
   void for_each_inner_stage(const typename Integrator<Sys>::Visit& visit) const override {
-    if constexpr (Sys::constraints > 0)
-      below_->for_each_inner_stage(
-          [&](const Step<Below>& step, double start, double size) { visit(down_.full_step(step, size), start, size); });
+    if (is_one_arrow_) return;
+    Down down = before_;
+    TrajectoryPoint<Below> end = point_before_;
+    const auto& groupoid = down.system().groupoid;
+    below_->for_each_inner_stage([&](const Step<Below>& step, double start, double size) {
+      down.join(step, size);
+      ++end.index;
+      end.time = start + size;
+      end.step_size = size;
+      end.step = step;
+      end.configuration = groupoid.project(groupoid.compose(end.configuration, step.arrow));
+      end.state.object = groupoid.target(end.configuration);
+      visit(down.full(end).step, start, size);
+    });
   }
   /// Steps of one arrow can be made in part: the full motion knows of each arrow below.
   bool cuts() const override { return is_one_arrow_ && below_->cuts(); }
@@ -80,8 +98,10 @@ template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : pu
   Down down_;
   std::unique_ptr<Integrator<Below>> below_;
   bool is_one_arrow_;
-  Down kept_;  ///< at the node from which steps are made in part
+  Down before_;  ///< of composed steps: at the node before
+  Down kept_;    ///< at the node from which steps are made in part
   TrajectoryPoint<Sys> point_, kept_point_;
+  TrajectoryPoint<Below> point_before_;
 };
 
 }  // namespace lagroid

@@ -9,7 +9,7 @@
 /// (std::invalid_argument). Status: `not_finite`, which leaves everything as it was. (Kutta 1901; Hairer, Norsett,
 /// Wanner I, table II.1.2.)
 
-#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/capabilities/stepped.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/solvers/methods/method.hpp>
@@ -18,6 +18,47 @@
 #include <utility>
 
 namespace lagroid {
+
+namespace detail {
+
+/// A step of length h from an arrow's coordinates and a momentum, over any scalar that the rates take.
+template <class Sys, class S> class RungeKuttaStep {
+ public:
+  using G = typename Sys::GroupoidType;
+  using Coordinates = Vector<S, G::arrow_coordinate_count()>;
+  struct Point {
+    Coordinates arrow;
+    AlgebroidVector<G, S> momentum;
+  };
+
+  /// Refers to the system.
+  explicit RungeKuttaStep(const Sys& system) : system_(system) {}
+
+  Point from(const Point& start, double h) const {
+    const auto at = [&](const Point& k, double t) {
+      return slope({start.arrow + k.arrow * t, start.momentum + k.momentum * t});
+    };
+    const Point k1 = slope(start);
+    const Point k2 = at(k1, h / 2);
+    const Point k3 = at(k2, h / 2);
+    const Point k4 = at(k3, h);
+    const double sixth = h / 6;
+    return {start.arrow + (k1.arrow + (k2.arrow + k3.arrow) * 2.0 + k4.arrow) * sixth,
+            start.momentum + (k1.momentum + (k2.momentum + k3.momentum) * 2.0 + k4.momentum) * sixth};
+  }
+
+ private:
+  Point slope(const Point& at) const {
+    const G& groupoid = system_.groupoid;
+    const ArrowOf<G, S> g = groupoid.template arrow_at<S>(at.arrow);
+    const auto rates = system_.rates(State<G, S>{groupoid.target(g), at.momentum});
+    return {groupoid.left_invariant(g, rates.velocity), rates.momentum};
+  }
+
+  const Sys& system_;
+};
+
+}  // namespace detail
 
 /// Integrates the rates of a system by Kutta's method of order 4 (Kutta 1901; Hairer, Norsett, Wanner I, table II.1.2)
 /// in the coordinates of arrows and momenta. Nothing brings the arrow back onto the groupoid, nor an object back to its
@@ -51,19 +92,6 @@ template <HasRates Sys> class RungeKuttaIntegrator {
   void serialize(NumberArchive& archive) { point_.serialize(system_.groupoid, archive); }
 
  private:
-  using Coordinates = Vector<double, G::arrow_coordinate_count()>;
-  struct Slope {
-    Coordinates arrow;
-    AlgebroidVector<G> momentum;
-  };
-
-  Slope slope(const Coordinates& arrow, const AlgebroidVector<G>& momentum) const {
-    const G& groupoid = system_.groupoid;
-    const ArrowOf<G> g = groupoid.template arrow_at<double>(arrow);
-    const Rates<G> rates = system_.rates({groupoid.target(g), momentum});
-    return {groupoid.left_invariant(g, rates.velocity), rates.momentum};
-  }
-
   Sys system_;
   TrajectoryPoint<Sys> point_;
 };
@@ -71,23 +99,16 @@ template <HasRates Sys> class RungeKuttaIntegrator {
 template <HasRates Sys> StepReport RungeKuttaIntegrator<Sys>::advance() {
   const G& groupoid = system_.groupoid;
   const double h = system_.h;
-  const Coordinates arrow = groupoid.coordinates_of_arrow(point_.configuration);
-  const AlgebroidVector<G>& momentum = point_.state.momentum;
-  const auto at = [&](const Slope& k, double t) { return slope(arrow + t * k.arrow, momentum + t * k.momentum); };
-  const Slope k1 = slope(arrow, momentum);
-  const Slope k2 = at(k1, h / 2);
-  const Slope k3 = at(k2, h / 2);
-  const Slope k4 = at(k3, h);
-  const Coordinates reached = arrow + h / 6 * (k1.arrow + 2 * (k2.arrow + k3.arrow) + k4.arrow);
-  const AlgebroidVector<G> mu = momentum + h / 6 * (k1.momentum + 2 * (k2.momentum + k3.momentum) + k4.momentum);
+  const auto reached = detail::RungeKuttaStep<Sys, double>(system_).from(
+      {groupoid.coordinates_of_arrow(point_.configuration), point_.state.momentum}, h);
   StepReport report;
   report.status = SolveStatus::not_finite;
-  if (!reached.allFinite() || !mu.allFinite()) return report;
+  if (!reached.arrow.allFinite() || !reached.momentum.allFinite()) return report;
   report.status = SolveStatus::converged;
-  const ArrowOf<G> g = groupoid.template arrow_at<double>(reached);
+  const ArrowOf<G> g = groupoid.template arrow_at<double>(reached.arrow);
   point_.step.arrow = groupoid.multiply(groupoid.inverse(point_.configuration), g);
   point_.configuration = g;
-  point_.state = {groupoid.target(g), mu};
+  point_.state = {groupoid.target(g), reached.momentum};
   point_.time = double(++point_.index) * h;
   point_.step_size = h;
   return report;

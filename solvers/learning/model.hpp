@@ -66,6 +66,22 @@ class IntegratedField {
   std::unique_ptr<ModelField> equations_;
 };
 
+/// Exact derivatives of motions of a model on spheres, by the 6 k numbers of a state and by some of its parameters, a
+/// column for each.
+class ModelDerivatives {
+ public:
+  using Points = CotangentSpheres<Eigen::Dynamic>::Point;
+
+  virtual ~ModelDerivatives() = default;
+  virtual int parameters() const = 0;
+  /// end <- where a step of size h from z leads to, by <- its derivatives, a row for each number of it; by
+  /// extrapolation of so many rows where there is no method.
+  virtual void step(const Points& z, const LieGroupMethod* method, double h, int rows, Points& end,
+                    Eigen::MatrixXd& by) = 0;
+  /// H, and by <- those of it.
+  virtual double energy(const Points& z, Eigen::MatrixXd& by) = 0;
+};
+
 /// A Hamiltonian with parameters theta, and where its states are. States on (T*S^2)^k are 6 x k matrices, column i
 /// (q_i, p_i), written one after the other in a column of 6k numbers.
 class Model {
@@ -99,6 +115,10 @@ class Model {
 
   /// For scenes of spheres; null elsewhere.
   virtual std::unique_ptr<ModelField> equations(const Eigen::VectorXd&) const { return nullptr; }
+  /// For these too, by the parameters at these places.
+  virtual std::unique_ptr<ModelDerivatives> derivatives(const Eigen::VectorXd&, std::vector<Eigen::Index>) const {
+    return nullptr;
+  }
 
   /// z <- the wanted states from each column of `starts`, one after the other. On R^2n the methods that stay on spheres
   /// are classical ones: commutator_free_4 is Kutta's, munthe_kaas_54 Dormand and Prince's.

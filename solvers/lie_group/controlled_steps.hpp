@@ -42,6 +42,8 @@ struct LieGroupControl {
   double largest_step = 1e300;
   long most_steps = 100'000'000;         ///< tried on the way to one end
   std::function<bool()> stop = nullptr;  ///< called before each; true ends the advance as a limit of steps does
+  /// Called after each that is accepted, with its size and how often it evaluated the field.
+  std::function<void(double h, int evaluations)> accepted = nullptr;
 };
 
 namespace detail {
@@ -151,6 +153,7 @@ template <class Step, class F> class ControlledSteps {
     std::swap(point_, trial_);
     time_ = reached;
     ++steps_;
+    if (control_.accepted) control_.accepted(h, attempt.evaluations);
   }
 
   Step step_;

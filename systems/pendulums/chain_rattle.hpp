@@ -26,6 +26,7 @@
 #include <limits>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace lagroid {
@@ -46,31 +47,35 @@ inline constexpr DeclaredMethod rattle_method{
 ///     l_i v_i+ = l_i v_i* + the same at q+ with tensions such that q_i+.v_i+ = 0               (linear, tridiagonal)
 ///
 /// A step may be composed of several such, of orders four, six and eight (Composition).
-template <int K> class ChainRattle {
+///
+/// Over numbers with derivatives S (core/scalars/varied.hpp) those of tensions are what the equations say at the
+/// solution, by the implicit function theorem, and nothing of the iteration that led there.
+template <int K, class S = double> class ChainRattle {
  public:
-  using Points = typename PendulumChain<K>::Points;
-  using V = Vector<double, 3>;
-  using Columns = Eigen::Matrix<double, 3, K>;
+  using Points = typename CotangentSpheres<K, S>::Point;
+  using V = Vector<S, 3>;
+  using Columns = Eigen::Matrix<S, 3, K>;
 
   /// `start` is (q, w). Throws std::invalid_argument unless it has as many columns as the chain has links.
   ChainRattle(const PendulumChain<K>& chain, const Points& start, double h,
               const Composition& composition = compositions::single)
-      : chain_(chain),
+      : gravity_(varied<S>(chain.gravity)),
+        length_(detail::varied_links<S>(chain.length)),
         composition_(composition),
         h_(h),
         q_(start.template topRows<3>()),
         v_(q_),
         next_(q_),
         half_(q_),
-        tension_(Vector<double, K>::Zero(chain.links())),
+        tension_(Vector<S, K>::Zero(chain.links())),
         end_(tension_),
         slope_(tension_),
         off_(tension_),
         pivot_(tension_),
         upper_(tension_),
-        share_(chain.mass.cwiseInverse()),
-        inverse_length_(chain.length.cwiseInverse()),
-        system_(chain) {
+        inverse_length_(length_.cwiseInverse()),
+        system_(chain),
+        share_(system_.inverse_mass) {
     if (start.cols() != chain.links())
       throw std::invalid_argument("a chain starts from as many points as it has links");
     for (int i = 1; i < chain.links(); ++i) share_(i) += system_.inverse_mass(i - 1);
@@ -90,9 +95,8 @@ template <int K> class ChainRattle {
   const Columns& velocities() const { return v_; }  ///< q_i'
   /// (q, w).
   Points point() const {
-    Points z(6, chain_.links());
-    for (int i = 0; i < chain_.links(); ++i)
-      CotangentSpheres<K>::set(z, i, q_.col(i), cross(V(q_.col(i)), V(v_.col(i))));
+    Points z(6, links());
+    for (int i = 0; i < links(); ++i) CotangentSpheres<K, S>::set(z, i, q_.col(i), cross(V(q_.col(i)), V(v_.col(i))));
     return z;
   }
 
@@ -110,9 +114,12 @@ template <int K> class ChainRattle {
   }
 
  private:
+  using P = ParameterScalar<S>;
+
+  int links() const { return int(length_.size()); }
   /// sum_j (d l_i v_i / d(h T_j / 2)) T_j, that is -T_i d_i q_i + T_{i+1} q_{i+1} / m_i + T_{i-1} q_{i-1} / m_{i-1}.
-  V pull(const Columns& q, const Vector<double, K>& t, int i) const {
-    const int k = chain_.links();
+  V pull(const Columns& q, const Vector<S, K>& t, int i) const {
+    const int k = links();
     V out = q.col(i) * (-t(i) * share_(i));
     if (i + 1 < k) out += q.col(i + 1) * (t(i + 1) * system_.inverse_mass(i));
     if (i > 0) out += q.col(i - 1) * (t(i - 1) * system_.inverse_mass(i - 1));
@@ -125,35 +132,45 @@ template <int K> class ChainRattle {
   StepReport stage(double h);
   double drift(double h);
   bool correct(double h);
+  /// One correction more, at the solution, has the derivatives that the equations there give the tensions.
+  bool carry_derivatives(double h) {
+    if constexpr (std::is_same_v<S, double>) {
+      return true;
+    } else {
+      return correct(h) && std::isfinite(drift(h));
+    }
+  }
+  static double size(const S& x) { return std::abs(value_of(x)); }
   StepReport close(double h);
 
-  PendulumChain<K> chain_;
+  P gravity_;
+  Vector<P, K> length_;
   Composition composition_;
   double h_;
   long index_ = 0;
   Columns q_, v_, next_, half_;
-  std::tuple<Columns, Columns, Vector<double, K>, Vector<double, K>> start_;  ///< of a step of several stages
-  Vector<double, K> tension_;                                                 ///< over the step, T
-  Vector<double, K> end_;                                                     ///< at its end, for the velocities
-  Vector<double, K> slope_;          ///< by which tension_ differs from end_ at the start of the step, over h
-  Vector<double, K> off_;            ///< (|q_i+|^2 - 1) / 2
-  Vector<double, K> pivot_, upper_;  ///< of Newton's correction
-  Vector<double, K> share_;          ///< d_i
-  Vector<double, K> inverse_length_;
-  ChainTensions<K, double> system_;
+  std::tuple<Columns, Columns, Vector<S, K>, Vector<S, K>> start_;  ///< of a step of several stages
+  Vector<S, K> tension_;                                            ///< over the step, T
+  Vector<S, K> end_;                                                ///< at its end, for the velocities
+  Vector<S, K> slope_;          ///< by which tension_ differs from end_ at the start of the step, over h
+  Vector<S, K> off_;            ///< (|q_i+|^2 - 1) / 2
+  Vector<S, K> pivot_, upper_;  ///< of Newton's correction
+  Vector<P, K> inverse_length_;
+  ChainTensions<K, S> system_;
+  Vector<P, K> share_;  ///< d_i
 };
 
-template <int K> void ChainRattle<K>::project_velocities(const Columns& q, const Columns& v, double h) {
+template <int K, class S> void ChainRattle<K, S>::project_velocities(const Columns& q, const Columns& v, double h) {
   const double rate = 2 / h;
-  for (int i = 0; i < chain_.links(); ++i) system_.x(i) = chain_.length(i) * q.col(i).dot(v.col(i)) * rate;
-  system_.x(0) -= chain_.gravity * q(2, 0);
+  for (int i = 0; i < links(); ++i) system_.x(i) = q.col(i).dot(v.col(i)) * length_(i) * rate;
+  system_.x(0) -= q(2, 0) * gravity_;
   system_.solve([&](int i) -> V { return q.col(i); });
 }
 
-template <int K> void ChainRattle<K>::tensions_at_rest() {
+template <int K, class S> void ChainRattle<K, S>::tensions_at_rest() {
   // Those of the continuous motion, l_i |v_i|^2 in place of 2 l_i q.v / h.
-  for (int i = 0; i < chain_.links(); ++i) system_.x(i) = chain_.length(i) * v_.col(i).squaredNorm();
-  system_.x(0) -= chain_.gravity * q_(2, 0);
+  for (int i = 0; i < links(); ++i) system_.x(i) = v_.col(i).squaredNorm() * length_(i);
+  system_.x(0) -= q_(2, 0) * gravity_;
   system_.solve([&](int i) -> V { return q_.col(i); });
   end_ = system_.x;
   slope_.setZero();
@@ -161,20 +178,20 @@ template <int K> void ChainRattle<K>::tensions_at_rest() {
 
 /// v* and q+ of the tensions in tension_; how far the q_i+ are from unit length, over what round-off in the terms that
 /// they are made of would leave, at most.
-template <int K> double ChainRattle<K>::drift(double h) {
-  const int k = chain_.links();
+template <int K, class S> double ChainRattle<K, S>::drift(double h) {
+  const int k = links();
   double worst = 0;
   for (int i = 0; i < k; ++i) {
     V change = pull(q_, tension_, i);
-    if (i == 0) change(2) -= chain_.gravity;
-    const double kick = h / 2 * inverse_length_(i);
+    if (i == 0) change(2) -= gravity_;
+    const P kick = inverse_length_(i) * (h / 2);
     half_.col(i) = v_.col(i) + change * kick;
-    next_.col(i) = q_.col(i) + h * half_.col(i);
-    off_(i) = 0.5 * (next_.col(i).squaredNorm() - 1);
-    double pulls = std::abs(tension_(i)) * share_(i);
-    if (i > 0) pulls += std::abs(tension_(i - 1)) * system_.inverse_mass(i - 1);
-    if (i + 1 < k) pulls += std::abs(tension_(i + 1)) * system_.inverse_mass(i);
-    const double relative = std::abs(off_(i)) / (1 + std::abs(h * kick) * pulls);
+    next_.col(i) = q_.col(i) + half_.col(i) * h;
+    off_(i) = (next_.col(i).squaredNorm() - 1.0) * 0.5;
+    double pulls = size(tension_(i)) * size(share_(i));
+    if (i > 0) pulls += size(tension_(i - 1)) * size(system_.inverse_mass(i - 1));
+    if (i + 1 < k) pulls += size(tension_(i + 1)) * size(system_.inverse_mass(i));
+    const double relative = size(off_(i)) / (1 + std::abs(h) * size(kick) * pulls);
     if (!(relative <= worst)) worst = relative;
   }
   return worst;
@@ -186,26 +203,26 @@ template <int K> double ChainRattle<K>::drift(double h) {
 ///     e_i = ( (n_{i-1} x n_i).(q_{i-1} x q_i) / m_{i-1} + n_i.q_i e_{i-1} ) / (m_{i-1} d_{i-1}),
 ///
 /// which is that of ChainTensions where n = q. False where a pivot is not positive.
-template <int K> bool ChainRattle<K>::correct(double h) {
-  const int k = chain_.links();
+template <int K, class S> bool ChainRattle<K, S>::correct(double h) {
+  const int k = links();
   const double unit = 2 / (h * h);
-  Vector<double, K>& x = system_.x;
-  double extra = 0;
+  Vector<S, K>& x = system_.x;
+  S extra(0.0);
   for (int i = 0; i < k; ++i) {
     const V here = q_.col(i);
     const V ahead = next_.col(i);
-    const double along = ahead.dot(here);
-    x(i) = off_(i) * chain_.length(i) * unit;
+    const S along = ahead.dot(here);
+    x(i) = off_(i) * length_(i) * unit;
     if (i > 0) {
       const V before = q_.col(i - 1);
       const V ahead_before = next_.col(i - 1);
-      const double r = system_.inverse_mass(i - 1);
-      const double over = r / pivot_(i - 1);
+      const P r = system_.inverse_mass(i - 1);
+      const S over = r / pivot_(i - 1);
       extra = (cross(ahead_before, ahead).dot(cross(before, here)) * r + along * extra) * over;
       x(i) += ahead.dot(before) * over * x(i - 1);
     }
     pivot_(i) = along * system_.inverse_mass(i) + extra;
-    if (!(pivot_(i) > 0)) return false;
+    if (!(value_of(pivot_(i)) > 0)) return false;
     if (i + 1 < k) upper_(i) = -ahead.dot(q_.col(i + 1)) * system_.inverse_mass(i);
   }
   for (int i = k; i-- > 0;) {
@@ -218,7 +235,7 @@ template <int K> bool ChainRattle<K>::correct(double h) {
 
 /// Newton's iteration for the tensions that keep |q+| = 1, to round-off, from those that stand in tension_; leaves q+
 /// and v*.
-template <int K> StepReport ChainRattle<K>::close(double h) {
+template <int K, class S> StepReport ChainRattle<K, S>::close(double h) {
   constexpr int most = 50;
   constexpr double round_off = 2 * std::numeric_limits<double>::epsilon();
   constexpr double close_to_it = 32 * round_off;
@@ -232,7 +249,7 @@ template <int K> StepReport ChainRattle<K>::close(double h) {
     }
     const bool falls = report.residual < 0.5 * last;
     if (report.residual <= round_off || (report.residual <= close_to_it && !falls)) {
-      report.status = SolveStatus::converged;
+      report.status = carry_derivatives(h) ? SolveStatus::converged : SolveStatus::left_domain;
       return report;
     }
     last = report.residual;
@@ -245,22 +262,24 @@ template <int K> StepReport ChainRattle<K>::close(double h) {
   return report;
 }
 
-template <int K> StepReport ChainRattle<K>::stage(double h) {
-  for (int i = 0; i < chain_.links(); ++i) tension_(i) = end_(i) + h * slope_(i);
+template <int K, class S> StepReport ChainRattle<K, S>::stage(double h) {
+  for (int i = 0; i < links(); ++i) tension_(i) = end_(i) + h * slope_(i);
   StepReport report = close(h);
   if (!report.converged()) return report;
   project_velocities(next_, half_, h);
   const double kick = h / 2;
-  for (int i = 0; i < chain_.links(); ++i) {
+  bool finite = true;
+  for (int i = 0; i < links(); ++i) {
     V change = pull(next_, system_.x, i);
-    if (i == 0) change(2) -= chain_.gravity;
-    half_.col(i) += change * (kick * inverse_length_(i));
+    if (i == 0) change(2) -= gravity_;
+    half_.col(i) += change * (inverse_length_(i) * kick);
+    finite = finite && std::isfinite(value_of(half_.col(i).sum()));
   }
-  if (!half_.allFinite()) {
+  if (!finite) {
     report.status = SolveStatus::not_finite;
     return report;
   }
-  for (int i = 0; i < chain_.links(); ++i) {
+  for (int i = 0; i < links(); ++i) {
     slope_(i) = (tension_(i) - end_(i)) * (1 / h);
     end_(i) = system_.x(i);
   }
@@ -269,7 +288,7 @@ template <int K> StepReport ChainRattle<K>::stage(double h) {
   return report;
 }
 
-template <int K> StepReport ChainRattle<K>::advance() {
+template <int K, class S> StepReport ChainRattle<K, S>::advance() {
   if (composition_.stages() == 1) {
     const StepReport report = stage(h_);
     if (report.converged()) ++index_;

@@ -31,9 +31,9 @@ struct DampedPendulum : Pendulum {
   template <class S> Forces<S, 1> forces(const PairArrow<S, 1>& g) const { return forces(g, h); }
 
   /// q' = p / (m l^2), p' = -dU/dq - c q'.
-  Rates<Pair<1>> rates(const State<Pair<1>>& s) const {
-    Rates<Pair<1>> free = Pendulum::rates(s);
-    free.momentum -= damping * free.velocity;
+  template <class S = double> RatesOver<Pair<1>, S> rates(const State<Pair<1>, S>& s) const {
+    RatesOver<Pair<1>, S> free = Pendulum::rates(s);
+    free.momentum -= free.velocity * varied<S>(damping);
     return free;
   }
 

@@ -12,6 +12,7 @@
 /// Masses and lengths must be as many, and in the range of `chain_number` (std::invalid_argument). [H] (mapfham)
 
 #include <lagroid/core/parameter.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/spheres.hpp>
 #include <lagroid/solvers/methods/method.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
@@ -21,12 +22,31 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 
 namespace lagroid {
 
 /// What masses and lengths of a chain must be: neither products of them nor inverses overflow.
 inline constexpr NumberRule chain_number{"positive, from 1e-300 to 1e300",
                                          [](double x) { return x >= 1e-300 && x <= 1e300; }};
+
+namespace detail {
+
+/// One number for each link, as formulas over S read it.
+template <class S, int K> Vector<lagroid::ParameterScalar<S>, K> varied_links(const Vector<double, K>& members) {
+  Vector<lagroid::ParameterScalar<S>, K> out;
+  out.resize(members.size());
+  for (Eigen::Index i = 0; i < members.size(); ++i) out(i) = varied<S>(members.data()[i]);
+  return out;
+}
+/// mu_i = m_i + ... + m_k.
+template <class P, int K> Vector<P, K> carried_masses(Vector<P, K> mass) {
+  for (Eigen::Index i = mass.size() - 1; i-- > 0;) mass(i) += mass(i + 1);
+  return mass;
+}
+
+}  // namespace detail
 
 /// k masses on k rods, the first from the origin: x_i = l_1 q_1 + ... + l_i q_i, q_i in S^2, in gravity -g e_3. K is k,
 /// or Eigen::Dynamic.
@@ -35,11 +55,11 @@ inline constexpr NumberRule chain_number{"positive, from 1e-300 to 1e300",
 ///     U = g sum_i mu_i l_i e_3.q_i
 ///
 /// States are 6 x k: (q_i, w_i) with q_i' = w_i x q_i in (TS^2)^k, or (q_i, p_i) with p_i = (I - q_i q_i^T) sum_j M_ij
-/// q_j' in (T*S^2)^k.
+/// q_j' in (T*S^2)^k. What is a function of states is written for any scalar, and varies with the parameters.
 template <int K> struct PendulumChain {
   using Numbers = Vector<double, K>;
-  using Points = typename CotangentSpheres<K>::Point;
-  using V = Vector<double, 3>;
+  template <class S> using PointsOver = typename CotangentSpheres<K, S>::Point;
+  using Points = PointsOver<double>;
 
   Numbers mass;     ///< m_i, kg
   Numbers length;   ///< l_i, m
@@ -57,7 +77,7 @@ template <int K> struct PendulumChain {
   /// Throws std::invalid_argument unless masses and lengths are as many and in the range of `chain_number`, and g is
   /// finite.
   PendulumChain(Numbers masses, Numbers lengths, double g = 9.81)
-      : mass(std::move(masses)), length(std::move(lengths)), gravity(g), carried(mass) {
+      : mass(std::move(masses)), length(std::move(lengths)), gravity(g), carried(detail::carried_masses(mass)) {
     if (mass.size() != length.size() || mass.size() == 0)
       throw std::invalid_argument("a chain has as many masses as lengths, one or more");
     for (Eigen::Index i = 0; i < mass.size(); ++i)
@@ -65,43 +85,45 @@ template <int K> struct PendulumChain {
         throw std::invalid_argument("masses and lengths of a chain are " + std::string(chain_number.words) +
                                     "; those of link " + std::to_string(i + 1) + " are not");
     if (!std::isfinite(g)) throw std::invalid_argument("the gravity of a chain is not finite");
-    for (Eigen::Index i = mass.size() - 1; i-- > 0;) carried(i) += carried(i + 1);
   }
 
   int links() const { return int(mass.size()); }
   CotangentSpheres<K> space() const { return {links()}; }
 
   /// Of (q, w).
-  double kinetic_energy(const Points& z) const {
-    double sum = 0;
-    V velocity = V::Zero();
+  template <class S> S kinetic_energy(const Eigen::Matrix<S, 6, K>& z) const {
+    S sum(0.0);
+    Vector<S, 3> velocity = Vector<S, 3>::Zero();
     for (int i = 0; i < links(); ++i) {
-      velocity += length(i) * link_velocity(z, i);
-      sum += 0.5 * mass(i) * velocity.squaredNorm();
+      velocity += link_velocity(z, i) * varied<S>(length(i));
+      sum += velocity.squaredNorm() * (varied<S>(mass(i)) * 0.5);
     }
     return sum;
   }
-  double potential_energy(const Points& z) const {
-    double sum = 0;
-    for (int i = 0; i < links(); ++i) sum += gravity * carried(i) * length(i) * z(2, i);
+  template <class S> S potential_energy(const Eigen::Matrix<S, 6, K>& z) const {
+    const auto& mu = carried_over<S>();
+    S sum(0.0);
+    for (int i = 0; i < links(); ++i) sum += z(2, i) * (varied<S>(gravity) * mu(i) * varied<S>(length(i)));
     return sum;
   }
-  double energy(const Points& z) const { return kinetic_energy(z) + potential_energy(z); }
+  template <class S> S energy(const Eigen::Matrix<S, 6, K>& z) const { return kinetic_energy(z) + potential_energy(z); }
   /// J_z = e_3 . sum_i m_i x_i x x_i', of (q, w).
-  double vertical_momentum(const Points& z) const {
+  template <class S> S vertical_momentum(const Eigen::Matrix<S, 6, K>& z) const {
+    using V = Vector<S, 3>;
     V place = V::Zero();
     V velocity = V::Zero();
-    double sum = 0;
+    S sum(0.0);
     for (int i = 0; i < links(); ++i) {
-      place += length(i) * V(z.col(i).template head<3>());
-      velocity += length(i) * link_velocity(z, i);
-      sum += mass(i) * (place(0) * velocity(1) - place(1) * velocity(0));
+      place += V(z.col(i).template head<3>()) * varied<S>(length(i));
+      velocity += link_velocity(z, i) * varied<S>(length(i));
+      sum += (place(0) * velocity(1) - place(1) * velocity(0)) * varied<S>(mass(i));
     }
     return sum;
   }
   /// sum_i |x_i| (m_i |x_i'| + mu_i (|g| l_i)^(1/2)), the size of its terms and of what tensions exchange between them
   /// over a step that resolves the swing.
   double momentum_size(const Points& z) const {
+    using V = Vector<double, 3>;
     V place = V::Zero();
     V velocity = V::Zero();
     double sum = 0;
@@ -114,27 +136,40 @@ template <int K> struct PendulumChain {
     return sum;
   }
   /// (q, w) -> (q, p), the Legendre transform.
-  Points to_momenta(const Points& z) const {
-    Points out = z;
+  template <class S> PointsOver<S> to_momenta_over(const Eigen::Matrix<S, 6, K>& z) const {
+    using V = Vector<S, 3>;
+    PointsOver<S> out = z;
     V velocity = V::Zero();
-    Points momentum = z;  // of the masses, below
+    PointsOver<S> momentum = z;  // of the masses, below
     for (int i = 0; i < links(); ++i) {
-      velocity += length(i) * link_velocity(z, i);
-      momentum.col(i).template tail<3>() = mass(i) * velocity;
+      velocity += link_velocity(z, i) * varied<S>(length(i));
+      momentum.col(i).template tail<3>() = velocity * varied<S>(mass(i));
     }
     V below = V::Zero();
     for (int i = links(); i-- > 0;) {
       below += momentum.col(i).template tail<3>();
       const V q = z.col(i).template head<3>();
-      out.col(i).template tail<3>() = length(i) * (below - q * q.dot(below));
+      out.col(i).template tail<3>() = (below - q * q.dot(below)) * varied<S>(length(i));
     }
     return out;
   }
+  Points to_momenta(const Points& z) const { return to_momenta_over<double>(z); }
   /// (q, p) -> (q, w).
-  Points to_velocities(const Points& z) const;
+  template <class S> PointsOver<S> to_velocities_over(const Eigen::Matrix<S, 6, K>& z) const;
+  Points to_velocities(const Points& z) const { return to_velocities_over<double>(z); }
 
-  static V link_velocity(const Points& z, int i) {
-    return cross(V(z.col(i).template tail<3>()), V(z.col(i).template head<3>()));
+  template <class S> static Vector<S, 3> link_velocity(const Eigen::Matrix<S, 6, K>& z, int i) {
+    return cross(Vector<S, 3>(z.col(i).template tail<3>()), Vector<S, 3>(z.col(i).template head<3>()));
+  }
+
+ private:
+  /// mu_i.
+  template <class S> decltype(auto) carried_over() const {
+    if constexpr (std::is_same_v<ParameterScalar<S>, double>) {
+      return (carried);
+    } else {
+      return detail::carried_masses(detail::varied_links<S>(mass));
+    }
   }
 };
 
@@ -151,12 +186,12 @@ template <int K> struct PendulumChain {
 /// sums of what is positive, where 1/m_i + 1/m_{i-1} - (q_i.q_{i-1} / m_{i-1})^2 / d_{i-1} would cancel beside a light
 /// bob on rods that are nearly in line.
 template <int K, class S> struct ChainTensions {
-  Vector<double, K> mass, inverse_mass;
+  Vector<ParameterScalar<S>, K> mass, inverse_mass;
   Vector<S, K> x;
 
   explicit ChainTensions(const PendulumChain<K>& chain)
-      : mass(chain.mass),
-        inverse_mass(chain.mass.cwiseInverse()),
+      : mass(detail::varied_links<S>(chain.mass)),
+        inverse_mass(mass.cwiseInverse()),
         x(Vector<S, K>::Zero(chain.links())),
         factor_(Vector<S, K>::Zero(chain.links())) {}
 
@@ -232,11 +267,11 @@ template <int K, class S = double> class ChainRotationField {
   using Z = typename Space::Point;
 
   explicit ChainRotationField(const PendulumChain<K>& chain)
-      : gravity_(chain.gravity), length_(chain.length), tension_(chain) {
+      : gravity_(varied<S>(chain.gravity)), length_(detail::varied_links<S>(chain.length)), tension_(chain) {
     above_ = below_ = length_.cwiseInverse();
     for (int i = 0; i < chain.links(); ++i) {
       below_(i) *= tension_.inverse_mass(i);
-      above_(i) *= i > 0 ? tension_.inverse_mass(i - 1) : 0;
+      above_(i) *= i > 0 ? tension_.inverse_mass(i - 1) : P(0);
     }
   }
 
@@ -256,9 +291,10 @@ template <int K, class S = double> class ChainRotationField {
   }
 
  private:
-  double gravity_;
-  Vector<double, K> length_;
-  Vector<double, K> above_, below_;  ///< 1/(l_i m_{i-1}) and 1/(l_i m_i)
+  using P = ParameterScalar<S>;
+  P gravity_;
+  Vector<P, K> length_;
+  Vector<P, K> above_, below_;  ///< 1/(l_i m_{i-1}) and 1/(l_i m_i)
   ChainTensions<K, S> tension_;
 };
 
@@ -295,20 +331,24 @@ template <int K, class S = double> class ChainMomentumField {
   using Z = typename Space::Point;
   using V = Vector<S, 3>;
 
-  explicit ChainMomentumField(const PendulumChain<K>& chain) : chain_(chain), multiplier_(chain) {}
+  explicit ChainMomentumField(const PendulumChain<K>& chain)
+      : gravity_(varied<S>(chain.gravity)),
+        length_(detail::varied_links<S>(chain.length)),
+        carried_mass_(detail::carried_masses(detail::varied_links<S>(chain.mass))),
+        multiplier_(chain) {}
 
   void operator()(double, const Z& z, Z& f) {
     solve(z);
-    const int k = chain_.links();
+    const int k = int(length_.size());
     V momentum = carried(z, 0);
     V above = V::Zero();  // x_{i-1}'
     for (int i = 0; i < k; ++i) {
       const V next = i + 1 < k ? carried(z, i + 1) : V(V::Zero());
       const V velocity = (momentum - next) * multiplier_.inverse_mass(i);
       const V q = Space::first(z, i);
-      const V xi = cross(q, V((velocity - above) * (1 / chain_.length(i))));
-      const double weight = chain_.gravity * chain_.carried(i) * chain_.length(i);
-      V eta = xi * (multiplier_.x(i) * -chain_.length(i));
+      const V xi = cross(q, V((velocity - above) * (1.0 / length_(i))));
+      const P weight = gravity_ * carried_mass_(i) * length_(i);
+      V eta = xi * (multiplier_.x(i) * -length_(i));
       eta(0) -= q(1) * weight;
       eta(1) += q(0) * weight;
       Space::set(f, i, xi, eta);
@@ -318,31 +358,35 @@ template <int K, class S = double> class ChainMomentumField {
   }
 
  private:
+  using P = ParameterScalar<S>;
   void solve(const Z& z) {
-    const int k = chain_.links();
+    const int k = int(length_.size());
     const auto& inverse_mass = multiplier_.inverse_mass;
     for (int i = 0; i < k; ++i) {
       const V q = Space::first(z, i);
       S right(0.0);
-      if (i + 1 < k) right += q.dot(Space::second(z, i + 1)) * (inverse_mass(i) / chain_.length(i + 1));
-      if (i > 0) right += q.dot(Space::second(z, i - 1)) * (inverse_mass(i - 1) / chain_.length(i - 1));
+      if (i + 1 < k) right += q.dot(Space::second(z, i + 1)) * (inverse_mass(i) / length_(i + 1));
+      if (i > 0) right += q.dot(Space::second(z, i - 1)) * (inverse_mass(i - 1) / length_(i - 1));
       multiplier_.x(i) = right;
     }
     multiplier_.solve([&](int i) { return Space::first(z, i); });
   }
   /// c_i.
   V carried(const Z& z, int i) const {
-    return Space::second(z, i) * (1 / chain_.length(i)) + Space::first(z, i) * multiplier_.x(i);
+    return Space::second(z, i) * (1.0 / length_(i)) + Space::first(z, i) * multiplier_.x(i);
   }
 
-  PendulumChain<K> chain_;
+  P gravity_;
+  Vector<P, K> length_, carried_mass_;
   ChainTensions<K, S> multiplier_;
 };
 
-template <int K> auto PendulumChain<K>::to_velocities(const Points& z) const -> Points {
-  Points u = z;
-  ChainMomentumField<K> (*this)(0, z, u);
-  Points out = z;
+template <int K>
+template <class S>
+auto PendulumChain<K>::to_velocities_over(const Eigen::Matrix<S, 6, K>& z) const -> PointsOver<S> {
+  PointsOver<S> u = z;
+  ChainMomentumField<K, S> (*this)(0, z, u);
+  PointsOver<S> out = z;
   out.template bottomRows<3>() = u.template topRows<3>();
   return out;
 }

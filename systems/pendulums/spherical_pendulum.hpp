@@ -77,10 +77,12 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   }
 
   /// q' = p / m, p' = -m g e3 + s q with s such that the rod keeps its length.
-  Rates<Pair<3>> rates(const State<Pair<3>>& s) const {
-    const Vector<double, 3> velocity = s.momentum / bob_mass;
-    const double tension = bob_mass * (gravity * s.object(2) - velocity.squaredNorm()) / s.object.squaredNorm();
-    return {velocity, tension * s.object - Vector<double, 3>(0, 0, bob_mass * gravity)};
+  template <class S = double> RatesOver<Pair<3>, S> rates(const State<Pair<3>, S>& s) const {
+    const ParameterScalar<S> m = varied<S>(bob_mass);
+    const ParameterScalar<S> g = varied<S>(gravity);
+    const Vector<S, 3> velocity = s.momentum / m;
+    const S tension = m * (g * s.object(2) - velocity.squaredNorm()) / s.object.squaredNorm();
+    return {velocity, s.object * tension - Vector<S, 3>(S(0.0), S(0.0), S(m * g))};
   }
 
   /// The continuous solution after time t.

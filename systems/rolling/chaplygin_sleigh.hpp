@@ -17,6 +17,8 @@
 #include <lagroid/systems/control/group_control.hpp>
 #include <lagroid/systems/instances.hpp>
 
+#include <array>
+#include <string_view>
 #include <vector>
 
 namespace lagroid {
@@ -56,8 +58,16 @@ struct ChaplyginSleigh : GroupControl<ChaplyginSleigh, SE2, /*constraints*/ 1> {
   /// The state of a sleigh that turns at the rate w and moves ahead at v1.
   State<SE2> sliding(double turning, double speed) const {
     State<SE2> s;
-    s.momentum << blade_inertia() * turning, mass * speed, mass * offset * turning;
+    s.momentum = momentum_of(s.object, Vector<double, 2>(turning, speed));
     return s;
+  }
+  static constexpr std::array<std::string_view, 2> velocity_names{"w", "v1"};
+  /// Of (w, v1).
+  template <class S>
+  Vector<S, 3> momentum_of(const ObjectOf<SE2, S>& /*the one there is*/, const Vector<S, 2>& v) const {
+    const auto m = varied<S>(mass);
+    const auto a = varied<S>(offset);
+    return {v(0) * (varied<S>(inertia) + m * a * a), v(1) * m, v(0) * (m * a)};
   }
   /// (w, v1) of a state that keeps the constraint.
   Vector<double, 2> velocities(const State<SE2>& s) const {

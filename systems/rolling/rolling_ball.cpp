@@ -9,8 +9,7 @@ State<RollingBall::GroupoidType> RollingBall::rolling(const Vector<double, 2>& p
                                                       const Vector<double, 2>& velocity, double spin) const {
   State<GroupoidType> s;
   std::get<0>(s.object) = position;
-  s.momentum << mass * velocity, -inertia() * (plate_rate * position(0) - velocity(1)) / radius,
-      -inertia() * (velocity(0) + plate_rate * position(1)) / radius, -inertia() * spin;
+  s.momentum = momentum_of(s.object, Vector<double, 3>(velocity(0), velocity(1), spin));
   return s;
 }
 

@@ -98,6 +98,22 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
   Vector<double, 3> angular_velocity(const State<GroupoidType>& s) const { return s.momentum.tail<3>() / -inertia(); }
   /// The state of a ball that rolls: w1 and w2 follow from the velocity of its centre.
   State<GroupoidType> rolling(const Vector<double, 2>& position, const Vector<double, 2>& velocity, double spin) const;
+  static constexpr std::array<std::string_view, 3> velocity_names{"vx", "vy", "spin"};
+  /// Of the velocity of the centre and the spin: M = -k m r^2 w, with r w1 = Omega x - vy and r w2 = Omega y + vx.
+  template <class S>
+  Vector<S, 5> momentum_of(const std::tuple<Vector<S, 2>, Vector<S, 0>>& q, const Vector<S, 3>& v) const {
+    const Vector<S, 2>& at = std::get<0>(q);
+    const auto m = varied<S>(mass);
+    const auto r = varied<S>(radius);
+    const auto rate = varied<S>(plate_rate);
+    Vector<S, 5> momentum;
+    momentum << v(0) * m, v(1) * m, (v(1) - at(0) * rate) * inertia<S>() / r, (v(0) + at(1) * rate) * -inertia<S>() / r,
+        v(2) * -inertia<S>();
+    return momentum;
+  }
+  Vector<double, 3> velocities(const State<GroupoidType>& s) const {
+    return {s.momentum(0) / mass, s.momentum(1) / mass, angular_velocity(s)(2)};
+  }
 
   /// The displacement of a step at constant velocity.
   Step<RollingBall> first_guess(const State<GroupoidType>& s) const;

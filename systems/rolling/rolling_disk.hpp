@@ -19,6 +19,8 @@
 #include <lagroid/groupoids/product.hpp>
 #include <lagroid/systems/instances.hpp>
 
+#include <array>
+#include <string_view>
 #include <vector>
 
 namespace lagroid {
@@ -72,8 +74,15 @@ struct RollingDisk : System<RollingDisk, Product<SE2, SO2>, /*arrow constraints*
   /// The state of a disk that turns and rolls at the given rates.
   State<GroupoidType> rolling(double turning, double rate) const {
     State<GroupoidType> s;
-    s.momentum << turning_inertia * turning, mass * radius * rate, 0, rolling_inertia * rate;
+    s.momentum = momentum_of(s.object, Vector<double, 2>(turning, rate));
     return s;
+  }
+  static constexpr std::array<std::string_view, 2> velocity_names{"w", "s"};
+  /// Of (w, s).
+  template <class S>
+  Vector<S, 4> momentum_of(const ObjectOf<GroupoidType, S>& /*the one there is*/, const Vector<S, 2>& v) const {
+    return {v(0) * varied<S>(turning_inertia), v(1) * (varied<S>(mass) * varied<S>(radius)), S(0),
+            v(1) * varied<S>(rolling_inertia)};
   }
   /// (w, s) of a state that rolls.
   Vector<double, 2> velocities(const State<GroupoidType>& s) const {

@@ -9,7 +9,7 @@
 ///
 /// Requires positive moments. (Marsden and Ratiu, Introduction to Mechanics and Symmetry, 15.11.)
 
-#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/noether.hpp>
@@ -22,6 +22,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 #include <vector>
 
 namespace lagroid {
@@ -67,20 +68,24 @@ struct Gyrostat : System<Gyrostat, Product<SO3, SO2, SO2, SO2>> {
   template <class S> S lagrangian(const Arrow<S>& g) const { return lagrangian(g, h); }
 
   /// (w, t) of a momentum.
-  Vector<double, 6> velocity(const Vector<double, 6>& mu) const {
-    const Vector<double, 3> w = (mu.head<3>() - mu.tail<3>()).cwiseQuotient(inertia);
-    Vector<double, 6> v;
-    v << w, mu.tail<3>().cwiseQuotient(rotors) - w;
+  template <class S = double> Vector<S, 6> velocity(const std::type_identity_t<Vector<S, 6>>& mu) const {
+    const Vector<S, 3> j = mu.template tail<3>();
+    const Vector<S, 3> w = (mu.template head<3>() - j).cwiseQuotient(varied<S>(inertia));
+    const Vector<S, 3> t = j.cwiseQuotient(varied<S>(rotors)) - w;
+    Vector<S, 6> v;
+    v << w, t;
     return v;
   }
 
   /// ((M - j).I^{-1} (M - j) + j.J^{-1} j) / 2 = <(M, j), (w, t)> / 2.
   double energy(const State<GroupoidType>& s) const { return 0.5 * s.momentum.dot(velocity(s.momentum)); }
 
-  Rates<GroupoidType> rates(const State<GroupoidType>& s) const {
-    const Vector<double, 6> v = velocity(s.momentum);
-    Vector<double, 6> change = Vector<double, 6>::Zero();
-    change.head<3>() = s.momentum.head<3>().cross(v.head<3>());
+  template <class S = double> RatesOver<GroupoidType, S> rates(const State<GroupoidType, S>& s) const {
+    const Vector<S, 6> v = velocity<S>(s.momentum);
+    const Vector<S, 3> mu = s.momentum.template head<3>();
+    const Vector<S, 3> w = v.template head<3>();
+    Vector<S, 6> change = Vector<S, 6>::Constant(S(0.0));
+    change.template head<3>() = mu.cross(w);
     return {v, change};
   }
 

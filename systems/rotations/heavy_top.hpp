@@ -10,7 +10,7 @@
 ///
 /// Requires positive principal moments and unit vectors v.
 
-#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/groupoids/connections.hpp>
@@ -65,9 +65,9 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   }
 
   /// I^{-1} M, M' = M x I^{-1} M + v x w.
-  Rates<GroupoidType> rates(const State<GroupoidType>& s) const {
-    const Vector<double, 3> velocity = s.momentum.cwiseQuotient(inertia);
-    return {velocity, s.momentum.cross(velocity) + s.object.cross(weight)};
+  template <class S = double> RatesOver<GroupoidType, S> rates(const State<GroupoidType, S>& s) const {
+    const Vector<S, 3> velocity = s.momentum.cwiseQuotient(varied<S>(inertia));
+    return {velocity, s.momentum.cross(velocity) + s.object.cross(varied<S>(weight))};
   }
 
   /// M.I^{-1} M / 2 + w.v.

@@ -11,7 +11,7 @@
 ///
 /// Requires positive principal moments. [G] 6.1
 
-#include <lagroid/core/capabilities/rates.hpp>
+#include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/systems/control/rotation_map.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -53,8 +53,8 @@ struct RigidBody : System<RigidBody, SO3> {
   double energy(const State<SO3>& s) const { return 0.5 * s.momentum.cwiseQuotient(inertia).dot(s.momentum); }
 
   /// w = I^{-1} M, M' = M x w.
-  Rates<SO3> rates(const State<SO3>& s) const {
-    const Vector<double, 3> w = s.momentum.cwiseQuotient(inertia);
+  template <class S = double> RatesOver<SO3, S> rates(const State<SO3, S>& s) const {
+    const Vector<S, 3> w = s.momentum.cwiseQuotient(varied<S>(inertia));
     return {w, s.momentum.cross(w)};
   }
 

@@ -42,6 +42,8 @@ struct SphereIntegratorOptions {
   long most_inner = most_inner_steps;    ///< of these, from one node to the next
   std::function<bool()> stop = nullptr;  ///< called before each of these; true ends the step, which is then not made
   Composition composition = compositions::single;  ///< of a symmetric method of the system's own
+  /// Called after each inner step, with its size and how often it evaluated the field.
+  std::function<void(double h, int evaluations)> accepted = nullptr;
 };
 
 /// A trajectory in the making, of equally spaced nodes. A step that does not converge leaves everything as it was.
@@ -88,7 +90,8 @@ inline LieGroupControl control_of(const SphereIntegratorOptions& options) {
           .first_step = options.step,
           .largest_step = options.step,
           .most_steps = options.most_inner,
-          .stop = options.stop};
+          .stop = options.stop,
+          .accepted = options.accepted};
 }
 
 /// From node to node by an integrator with a tolerance.

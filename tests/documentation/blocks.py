@@ -116,9 +116,10 @@ def commands(text):
 def options(*path):
     """The options of a subcommand, such as ("run",) or ("reproduce", "time-steps"); None if there is no such one."""
     arm = re.search(rf"^  (?:\w+ \| )*{path[0]}(?: \| \w+)*\)(.*?)^    ;;", script, re.M | re.S)
-    beside = {"check": "check/check.cpp", "gradient": "gradient/gradient.cpp", "fit": "gradient/gradient.cpp"}
+    beside = {"check": ("check/check.cpp",), "gradient": ("gradient/gradient.cpp",),
+              "fit": ("gradient/gradient.cpp", "gradient/fit/fit_command.cpp")}
     if path[0] in beside:  # take minutes to build: their options as their sources name them
-        sources_of_it = (beside[path[0]], "command/command.cpp")
+        sources_of_it = (*beside[path[0]], "command/command.cpp")
         said = "".join((root / "app" / name).read_text() for name in sources_of_it)
         return set(re.findall(r"--[\w-]+", said))
     if arm and 'exec "$program" "$@"' not in arm[1]:  # else it is the program's

@@ -1,5 +1,7 @@
 #include "boundary_cost.hpp"
 
+#include "../checks/differences.hpp"
+
 #include <fmt/format.h>
 
 namespace lagroid::app {
@@ -35,7 +37,7 @@ GradientTable differentiate_cost(const GradientSubject& subject, const std::vect
   set_growth(out, 1);
   if (check)
     compare_with_differences(subject, columns, out,
-                             [&](const std::vector<Nudge>& nudges) { return as_vector(found.again(nudges)); });
+                             [&](const std::vector<Nudge>& nudges) { return as_vector(found.again(nudges)); }, {});
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace lagroid::app {
@@ -67,10 +68,10 @@ void name_null_space(const Eigen::MatrixXd& directions, const std::vector<Guesse
     fit.undetermined.push_back(in_words(parts.row(k), units, fit.unknowns));
 }
 
-/// Functions of the unknowns, of which some the data tell though they do not tell all unknowns. `lost` holds directions
-/// that they do not, in units `size`, a column each.
-void describe_combinations(const GradientSubject& subject, const FitOptions& options, const Eigen::MatrixXd& lost,
-                           const Eigen::VectorXd& size, Fit& fit) {
+/// Functions of the unknowns, of which some the data tell though they do not tell all unknowns. `unseen` holds changes
+/// that they do not see, and `unit` those of one unknown each by which the data change alike, a column each.
+void describe_combinations(const GradientSubject& subject, const FitOptions& options, const Eigen::MatrixXd& unseen,
+                           const Eigen::MatrixXd& unit, Fit& fit) {
   std::vector<std::string> names;
   std::vector<double> values;
   for (const Fit::Unknown& each : fit.unknowns) {
@@ -86,14 +87,68 @@ void describe_combinations(const GradientSubject& subject, const FitOptions& opt
   for (const NamedText& text : options.combinations) {
     ComputedNumber function(text, names);
     Fit::Combination out{text.first, function.evaluate(values)};
-    Eigen::VectorXd by = Eigen::VectorXd::Zero(size.size());
+    if (!std::isfinite(out.value))
+      throw GradientRefused(
+          fmt::format("--combination {}={}: it is no finite number at the solution", text.first, text.second));
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(unit.rows());
     for (std::size_t k = 0; k < function.used().size(); ++k)
       if (const auto at = Eigen::Index(function.used()[k]); at < by.size()) by(at) = function.by()[k];
-    const Eigen::VectorXd scaled = by.cwiseQuotient(size);
-    const bool is_told = (lost.transpose() * scaled).norm() <= 1e-6 * scaled.norm();
+    const bool is_told = (unseen.transpose() * by).norm() <= 1e-6 * (unit.transpose() * by).norm();
     out.deviation = is_told ? std::sqrt(by.dot(fit.covariance * by)) : infinite;
     fit.combinations.push_back(out);
   }
+}
+
+constexpr double nothing_known = std::numeric_limits<double>::quiet_NaN();
+
+/// Marks the unknowns that end at a bound; the others as columns.
+Eigen::MatrixXd free_unknowns(const std::vector<Guessed>& unknowns, Fit& fit) {
+  const auto n = Eigen::Index(unknowns.size());
+  Eigen::MatrixXd free(n, n);
+  Eigen::Index count = 0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto& [name, start, size, bounds] = unknowns[std::size_t(j)];
+    Fit::Unknown& unknown = fit.unknowns[std::size_t(j)];
+    const double rounding = 1e-12 * size;
+    unknown.at_bound = unknown.value <= bounds[0] + rounding || unknown.value >= bounds[1] - rounding;
+    if (!unknown.at_bound) free.col(count++) = Eigen::VectorXd::Unit(n, j);
+  }
+  return free.leftCols(count);
+}
+
+/// Weighted residuals, as the loss takes them, and their derivatives.
+struct LeftOver {
+  Eigen::MatrixXd derivatives;
+  double squares = 0;  ///< the sum of psi^2
+  long within = 0;     ///< how many are not cut off
+
+  /// s, of so many unknowns that are told; nothing is left over of as many numbers.
+  double scale(Eigen::Index told) const {
+    const auto spare = double(derivatives.rows() - told);
+    return spare > 0 ? std::sqrt(squares / spare) : nothing_known;
+  }
+  /// c, one where nothing is cut off.
+  double correction(Eigen::Index told) const {
+    const auto count = double(derivatives.rows());
+    const double share = double(within) / count;
+    return share > 0 ? (1 + double(told) / count * (1 - share) / share) / share : nothing_known;
+  }
+};
+LeftOver left_over(const PredictedRuns& runs, Eigen::Index unknowns, double huber) {
+  std::size_t count = 0;
+  for (const MeasuredRun& run : runs.runs()) count += run.size();
+  LeftOver out{Eigen::MatrixXd(Eigen::Index(count), unknowns)};
+  std::size_t index = 0;
+  for (const MeasuredRun& run : runs.runs())
+    for (const MeasuredNumber& each : run) {
+      const double residual = (runs.predicted(index) - each.value) / each.sigma;
+      const bool is_within = huber == 0 || std::abs(residual) <= huber;
+      out.squares += is_within ? residual * residual : huber * huber;
+      out.within += is_within ? 1 : 0;
+      out.derivatives.row(Eigen::Index(index)) = runs.derivatives(index) / each.sigma;
+      ++index;
+    }
+  return out;
 }
 
 }  // namespace
@@ -126,56 +181,41 @@ void describe_columns(const PredictedRuns& runs, Fit& fit) {
 
 void describe_unknowns(const PredictedRuns& runs, const GradientSubject& subject, const std::vector<Guessed>& unknowns,
                        const FitOptions& options, Fit& fit) {
-  const auto n = Eigen::Index(unknowns.size());
-  std::size_t count = 0;
-  for (const MeasuredRun& run : runs.runs()) count += run.size();
-  Eigen::MatrixXd weighted(Eigen::Index(count), n);
-  std::size_t index = 0;
-  double squares = 0;
-  for (const MeasuredRun& run : runs.runs())
-    for (const MeasuredNumber& each : run) {
-      const double residual = (runs.predicted(index) - each.value) / each.sigma;
-      // A residual beyond the bound of Huber's loss weighs less.
-      const double weight =
-          options.huber > 0 && std::abs(residual) > options.huber ? options.huber / std::abs(residual) : 1;
-      weighted.row(Eigen::Index(index)) = std::sqrt(weight) / each.sigma * runs.derivatives(index);
-      ++index;
-      squares += weight * residual * residual;
-    }
+  const Eigen::MatrixXd free = free_unknowns(unknowns, fit);
+  const LeftOver left = left_over(runs, Eigen::Index(unknowns.size()), options.huber);
+  Eigen::MatrixXd weighted = left.derivatives * free;
   // What changes by an unknown's own size, and is rounding beside the others, is nothing.
   Eigen::VectorXd size = weighted.colwise().norm();
-  Eigen::VectorXd effect = size;
-  for (Eigen::Index j = 0; j < n; ++j) effect(j) *= unknowns[std::size_t(j)].size;
-  for (Eigen::Index j = 0; j < n; ++j) {
+  Eigen::VectorXd effect(free.rows());
+  for (Eigen::Index j = 0; j < free.rows(); ++j) effect(j) = unknowns[std::size_t(j)].size;
+  effect = (free.transpose() * effect).cwiseProduct(size).eval();
+  for (Eigen::Index j = 0; j < size.size(); ++j) {
     if (effect(j) > 1e-12 * effect.maxCoeff()) continue;
     weighted.col(j).setZero();
     size(j) = 1;
   }
   constexpr double not_told = 1e-10;  // of the derivatives, which are exact to round-off and grew on the way
-  const RightSingularVectors found = right_singular_vectors(weighted * size.cwiseInverse().asDiagonal(), not_told);
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd lost = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Eigen::VectorXd direction = found.v.col(k);
-    if (k < found.rank) {
-      inverse += direction * direction.transpose() / (found.values(k) * found.values(k));
-    } else {
-      lost += direction.cwiseAbs2();
-    }
-  }
+  RightSingularVectors found{};
+  if (size.size() > 0) found = right_singular_vectors(weighted * size.cwiseInverse().asDiagonal(), not_told);
   fit.rank = found.rank;
   fit.singular_values = found.values;
-  name_null_space(size.cwiseInverse().asDiagonal() * found.v.rightCols(n - found.rank), unknowns, fit);
-  fit.scale = std::sqrt(squares / std::max(1.0, double(count) - double(found.rank)));
-  fit.covariance =
-      fit.scale * fit.scale * (size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal());
-  for (Eigen::Index j = 0; j < n; ++j) {
+  const Eigen::MatrixXd unit = free * size.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd not_seen = found.v.rightCols(size.size() - found.rank);
+  const Eigen::MatrixXd seen = unit * found.v.leftCols(found.rank), unseen = unit * not_seen;
+  name_null_space(unseen, unknowns, fit);
+  fit.scale = left.scale(fit.rank);
+  // As many numbers as unknowns leave nothing over by which their errors could be measured.
+  const bool all_have_sigma = std::all_of(fit.columns.begin(), fit.columns.end(),
+                                          [&](const Fit::Column& each) { return options.sigma.count(each.name) > 0; });
+  const double error = std::isnan(fit.scale) && all_have_sigma ? 1 : left.correction(fit.rank) * fit.scale;
+  const Eigen::VectorXd parts = found.values.head(fit.rank).cwiseInverse() * error;
+  fit.covariance = seen * parts.cwiseAbs2().asDiagonal() * seen.transpose();
+  const Eigen::VectorXd lost = (free * not_seen).rowwise().squaredNorm();
+  for (Eigen::Index j = 0; j < free.rows(); ++j) {
     Fit::Unknown& unknown = fit.unknowns[std::size_t(j)];
-    unknown.deviation = lost(j) > 1e-6 ? infinite : std::sqrt(fit.covariance(j, j));
-    const auto [low, high] = unknowns[std::size_t(j)].bounds;
-    unknown.at_bound = unknown.value <= low || unknown.value >= high;
+    unknown.deviation = unknown.at_bound ? nothing_known : lost(j) > 1e-6 ? infinite : std::sqrt(fit.covariance(j, j));
   }
-  describe_combinations(subject, options, found.v.rightCols(n - found.rank), size, fit);
+  describe_combinations(subject, options, unseen, unit, fit);
 }
 
 }  // namespace lagroid::app

@@ -23,7 +23,8 @@ struct Guessed {
   std::array<double, 2> bounds;
 };
 
-/// Covariance, and what the data do not tell: singular values of J with columns of length one.
+/// Which unknowns are at a bound, covariance, and what the data do not tell: singular values of J with columns of
+/// length one.
 void describe_unknowns(const PredictedRuns& runs, const GradientSubject& subject, const std::vector<Guessed>& unknowns,
                        const FitOptions& options, Fit& fit);
 /// How each residual goes with the next, of a column of a run after another.

@@ -1,5 +1,6 @@
 #include "answer.hpp"
 
+#include <lagroid/solvers/ceres_solve.hpp>
 #include <lagroid/solvers/poisson/wiener_path.hpp>
 
 #include <ceres/ceres.h>
@@ -24,6 +25,7 @@ class Residual final : public ceres::CostFunction {
   bool Evaluate(double const* const*, double* residual, double** jacobians) const override {
     if (!runs_.is_defined()) return false;
     *residual = (runs_.predicted(index_) - measurement_.value) / measurement_.sigma;
+    if (!std::isfinite(*residual * *residual)) return false;
     if (jacobians != nullptr && jacobians[0] != nullptr)
       Eigen::Map<Eigen::RowVectorXd>(jacobians[0], Eigen::Index(runs_.unknowns())) =
           runs_.derivatives(index_) / measurement_.sigma;
@@ -36,35 +38,71 @@ class Residual final : public ceres::CostFunction {
   const MeasuredNumber& measurement_;
 };
 
-std::array<double, 2> bounds_of(const std::string& name, double start, const FitOptions& options) {
+double size_of(double start) { return start != 0 ? std::abs(start) : 1; }
+
+/// The signs that scenes allow a number, which has a value there. What is to be positive comes near zero and no nearer.
+std::array<double, 2> range_of(const GradientSubject& subject, Nudge number, double start) {
+  std::array<double, 2> out{-infinite, infinite};
+  // A start that follows what is allowed is allowed everywhere.
+  if (!subject.refusal || (number.parameter.empty() && subject.begun_by)) return out;
+  const double size = size_of(start);
+  const auto is_refused = [&](double value) {
+    number.by = value - start;
+    return !subject.refusal({number}).empty();
+  };
+  const auto nearest = [&] { return is_refused(0) ? 1e-6 * size : 0; };
+  if (start >= 0 && is_refused(-size)) out[0] = nearest();
+  if (start <= 0 && is_refused(size)) out[1] = -nearest();
+  return out;
+}
+
+std::array<double, 2> bounds_of(const std::string& name, double start, const std::array<double, 2>& range,
+                                const FitOptions& options) {
   const auto found = options.bounds.find(name);
-  if (found == options.bounds.end()) return {-infinite, infinite};
+  if (found == options.bounds.end()) return range;
   const auto [low, high] = found->second;
   if (!(low <= start && start <= high))
     throw GradientRefused(
         fmt::format("{}: the scene has {:g}, which is not from {:g} to {:g}", name, start, low, high));
-  return found->second;
+  return {std::max(low, range[0]), std::min(high, range[1])};
+}
+
+/// Refuses numbers of the start that cannot be changed alone.
+GradientSubject with_what_can_be_fitted(const GradientSubject& subject) {
+  GradientSubject out = subject;
+  for (std::size_t i = 0; i < subject.start.size(); ++i) {
+    const GradientName& name = subject.start[i];
+    std::string why;
+    if (name.group == "displacement") {
+      why = "where a run starts is fitted on vector spaces alone";
+    } else if (subject.refusal && !subject.begun_by) {
+      const double by = 1e-3 * size_of(subject.sizes[i]);
+      why = subject.refusal({{.index = int(i), .by = by}});
+      if (!why.empty() && subject.refusal({{.index = int(i), .by = -by}}).empty()) why.clear();
+      if (!why.empty()) why = "with another one alone " + why;
+    }
+    if (!why.empty()) out.refused.emplace_back("initial." + name.name, why + "; fit others");
+  }
+  return out;
 }
 
 /// Names them in the fit, too.
 std::vector<Guessed> unknowns_of(const GradientSubject& subject, const GradientColumns& columns, std::size_t runs,
                                  const FitOptions& options, Fit& fit) {
   std::vector<Guessed> out;
-  const auto add = [&](const std::string& name, const std::string& of_run, double start) {
-    out.push_back({name, start, start != 0 ? std::abs(start) : 1, bounds_of(name, start, options)});
+  const auto add = [&](const std::string& name, const std::string& of_run, const Nudge& number, double start) {
+    const std::array<double, 2> range = range_of(subject, number, start);
+    out.push_back({name, start, size_of(start), bounds_of(name, start, range, options)});
     fit.unknowns.push_back({name + of_run, start});
   };
   for (std::size_t r = 0; r < runs; ++r)
-    for (const int i : columns.start) {
-      const GradientName& name = subject.start[std::size_t(i)];
-      if (name.group == "displacement")
-        throw GradientRefused(fmt::format(
-            "initial.{}: where a run starts is fitted on vector spaces alone; fit momenta and parameters", name.name));
-      add("initial." + name.name, runs > 1 ? fmt::format(" of run {}", r + 1) : "", subject.sizes[std::size_t(i)]);
-    }
-  for (const int i : columns.parameters)
-    add("parameters." + subject.parameters[std::size_t(i)].name, "",
-        subject.sizes[subject.start.size() + std::size_t(i)]);
+    for (const int i : columns.start)
+      add("initial." + subject.start[std::size_t(i)].name, runs > 1 ? fmt::format(" of run {}", r + 1) : "",
+          {.index = i}, subject.sizes[std::size_t(i)]);
+  for (const int i : columns.parameters) {
+    const std::string& name = subject.parameters[std::size_t(i)].name;
+    add("parameters." + name, "", {.parameter = name}, subject.sizes[subject.start.size() + std::size_t(i)]);
+  }
   if (out.empty()) throw GradientRefused("nothing is to be fitted; name what with --wrt");
   return out;
 }
@@ -87,21 +125,20 @@ double solve(PredictedRuns& runs, const std::vector<Guessed>& unknowns, const Fi
     if (low > -infinite) problem.SetParameterLowerBound(runs.x(), int(j), low - unknowns[j].start);
     if (high < infinite) problem.SetParameterUpperBound(runs.x(), int(j), high - unknowns[j].start);
   }
-  ceres::Solver::Options solver;
+  ceres::Solver::Options solver = lagroid::detail::to_round_off(200);
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = 200;
   solver.function_tolerance = 1e-14;
   solver.parameter_tolerance = 1e-12;
   solver.gradient_tolerance = 1e-14;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
+  const ceres::Solver::Summary summary = lagroid::detail::solve_by_ceres(solver, problem);
   fit.iterations += int(summary.iterations.size()) - 1;
   if (!summary.IsSolutionUsable() || !std::isfinite(summary.final_cost)) {
     fit.status = "failed";
     return infinite;
   }
-  fit.status = summary.termination_type == ceres::CONVERGENCE ? "converged" : "not_converged";
+  // What ends by a step to where nothing is known is where the search was stopped, and no solution.
+  fit.stopped_by = runs.failure();
+  fit.status = summary.termination_type == ceres::CONVERGENCE && runs.is_defined() ? "converged" : "not_converged";
   return summary.final_cost;
 }
 
@@ -151,8 +188,9 @@ double solve_from_guess(PredictedRuns& runs, const std::vector<Guessed>& unknown
 
 }  // namespace
 
-Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& files, const FitOptions& options) {
+Fit fit_scene(const GradientSubject& scene, const std::vector<std::string>& files, const FitOptions& options) {
   Fit fit;
+  const GradientSubject subject = with_what_can_be_fitted(scene);
   fit.system = subject.system;
   fit.runs = files.size();
   const GradientColumns columns = columns_of(subject, options.unknowns);
@@ -196,6 +234,8 @@ Fit fit_scene(const GradientSubject& subject, const std::vector<std::string>& fi
   for (std::size_t j = 0; j < unknowns.size(); ++j) best.unknowns[j].value = unknowns[j].start + at_best[j];
   describe_unknowns(runs, subject, unknowns, options, best);
   describe_columns(runs, best);
+  if (!best.stopped_by.empty())
+    best.notes.push_back(fmt::format("the search was stopped where there is no run: {}", best.stopped_by));
   return best;
 }
 

@@ -12,12 +12,17 @@ namespace lagroid::app {
 namespace {
 
 std::string deviation_in_words(double deviation) {
-  return std::isfinite(deviation) ? fmt::format("{:.3g}", deviation) : "not told";
+  return std::isfinite(deviation) ? fmt::format("{:.3g}", deviation) : std::isnan(deviation) ? "not known" : "not told";
+}
+
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 std::string line_of(const Fit::Unknown& unknown, std::size_t width) {
   return fmt::format("  {:{}}  {:20.12g}  {:>12}  {:14.6g}{}\n", unknown.name, width, unknown.value,
-                     deviation_in_words(unknown.deviation), unknown.start, unknown.at_bound ? "  at its bound" : "");
+                     unknown.at_bound ? "held" : deviation_in_words(unknown.deviation), unknown.start,
+                     unknown.at_bound ? "  at its bound" : "");
 }
 
 nlohmann::ordered_json matrix_of(const Eigen::MatrixXd& a) {
@@ -33,8 +38,9 @@ nlohmann::ordered_json matrix_of(const Eigen::MatrixXd& a) {
 }  // namespace
 
 std::string text_of(const Fit& fit) {
-  std::string out = fmt::format("{}: fitted to {} numbers of {} run{}: {} after {} iterations\n\n", fit.system,
-                                fit.points.size(), fit.runs, fit.runs == 1 ? "" : "s", fit.status, fit.iterations);
+  std::string out =
+      fmt::format("{}: fitted to {} of {}: {} after {}\n\n", fit.system, counted(fit.points.size(), "number"),
+                  counted(fit.runs, "run"), fit.status, counted(std::size_t(fit.iterations), "iteration"));
   std::size_t width = 0;
   for (const Fit::Unknown& each : fit.unknowns) width = std::max(width, each.name.size());
   for (const Fit::Combination& each : fit.combinations) width = std::max(width, each.name.size());
@@ -60,14 +66,20 @@ std::string text_of(const Fit& fit) {
       out += "\n";
     }
   }
-  out += fmt::format("\n  what is left over: {:.4g} sigma, root mean square\n", fit.scale);
+  out += std::isnan(fit.scale)
+             ? "\n  as many numbers as unknowns: nothing is left over that would tell how large errors "
+               "are but what --sigma says of all columns\n"
+             : fmt::format("\n  what is left over: {:.4g} sigma, root mean square\n", fit.scale);
   for (const Fit::Column& each : fit.columns)
-    out += fmt::format("  {:{}}  {:.4g} over {} numbers; each goes with the next by {:.2f}: {}\n", each.name, width,
-                       each.rms, each.count, each.correlation,
+    out += fmt::format("  {:{}}  {:.4g} over {}; each goes with the next by {:.2f}: {}\n", each.name, width, each.rms,
+                       counted(std::size_t(each.count), "number"), each.correlation,
                        each.exact() ? "rounding"
                        : each.white ? "as independent errors do"
                                     : "not as independent errors do, the model is another or the errors are");
-  if (!fit.ignored.empty()) out += fmt::format("  ignored, no columns of the run: {}\n", fmt::join(fit.ignored, ", "));
+  if (!fit.left_out.empty()) out += fmt::format("  left out by --of: {}\n", fmt::join(fit.left_out, ", "));
+  if (!fit.ignored.empty())
+    out += fmt::format("  ignored, for they are none of what a run is fitted by (more of it by --column): {}\n",
+                       fmt::join(fit.ignored, ", "));
   for (const std::string& note : fit.notes) out += fmt::format("  note: {}\n", note);
   if (!fit.other_costs.empty())
     out += fmt::format("  cost {:.6g}; from other guesses {:.6g}\n", fit.cost, fmt::join(fit.other_costs, ", "));
@@ -83,7 +95,7 @@ std::string json_of(const Fit& fit) {
   out["cost"] = fit.cost;
   out["other_costs"] = OrderedJson::array();
   for (const double each : fit.other_costs) out["other_costs"].push_back(finite(each));
-  out["scale"] = fit.scale;
+  out["scale"] = finite(fit.scale);
   out["unknowns"] = OrderedJson::array();
   for (const Fit::Unknown& each : fit.unknowns)
     out["unknowns"].push_back({{"name", each.name},
@@ -108,6 +120,7 @@ std::string json_of(const Fit& fit) {
                               {"correlation", each.correlation},
                               {"white", each.white}});
   out["ignored"] = fit.ignored;
+  out["left_out"] = fit.left_out;
   if (!fit.notes.empty()) out["notes"] = fit.notes;
   return out.dump(2);
 }

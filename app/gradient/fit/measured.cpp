@@ -17,6 +17,7 @@ namespace {
 struct Nodes {
   double start;
   double step;
+  long count;  ///< of the scene's own run
 };
 Nodes nodes_of(const GradientSubject& subject) {
   if (subject.through_events && !subject.begins_through_events)
@@ -24,26 +25,29 @@ Nodes nodes_of(const GradientSubject& subject) {
   if (subject.cost) throw GradientRefused("a fit takes initial values; a path between two ends has no column t to fit");
   const auto motion = subject.begin({}, {});
   const double start = motion->time();
-  if (!motion->has_equal_steps()) return {start, 0};
+  if (!motion->has_equal_steps()) return {start, 0, 0};
   if (!motion->advance().converged()) throw GradientRefused("the first step of the scene's own run does not converge");
-  return {start, motion->time() - start};
+  return {start, motion->time() - start, subject.steps};
 }
 
 /// Where steps vary, times are those of no node.
 long node_at(double time, const Nodes& nodes, const std::string& file, long line) {
-  if (nodes.step == 0) {
-    if (!(time >= nodes.start))
-      throw DataError(
-          fmt::format("{}: row {}: t = {:.10g} is before the start of the run, {:g}", file, line, time, nodes.start));
-    return -1;
-  }
-  const double steps = (time - nodes.start) / nodes.step;
+  const auto refuse = [&](const std::string& why) {
+    throw DataError(fmt::format("{}: row {}: t = {:.10g} is {}", file, line, time, why));
+  };
+  const double steps = nodes.step == 0 ? time - nodes.start : (time - nodes.start) / nodes.step;
+  if (!(steps >= -1e-6)) refuse(fmt::format("before the start of the run, {:g}", nodes.start));
+  if (nodes.step == 0) return -1;
+  // Runs of a fit go as far as the data do; one far longer than the scene's, many times over, is hardly meant.
+  if (steps > std::max(1e6, 10 * double(nodes.count)))
+    refuse(
+        fmt::format("{:.10g} steps after the start, and the scene's run has {}; give it as many by time.steps, if that "
+                    "is meant",
+                    std::ceil(steps), nodes.count));
   const double nearest = std::round(steps);
-  if (!(nearest >= 0) || std::abs(steps - nearest) > 1e-6)
-    throw DataError(
-        fmt::format("{}: row {}: t = {:.10g} is no node of the run, which has them at {:g} + k {:g}; choose "
-                    "a time.step that divides the times",
-                    file, line, time, nodes.start, nodes.step));
+  if (std::abs(steps - nearest) > 1e-6)
+    refuse(fmt::format("no node of the run, which has them at {:g} + k {:g}; choose a time.step that divides the times",
+                       nodes.start, nodes.step));
   return long(nearest);
 }
 
@@ -67,6 +71,8 @@ CsvTable table_of_series(const std::string& file) {
   return out;
 }
 
+constexpr double largest = 1e100;  // of sigma: more has no sum of squares
+
 /// One who reads the columns of several files.
 class Reader {
  public:
@@ -82,22 +88,36 @@ class Reader {
     const std::size_t time = table.column("t");
     if (time == CsvTable::npos) throw DataError(fmt::format("{}: no column t, the time, in the header", file));
     MeasuredRun out;
+    long gaps = 0;
     for (std::size_t c = 0; c < table.names.size(); ++c) {
       const std::string& name = table.names[c];
       if (c == time) continue;
       const auto column = wanted(name);
       if (!column) continue;
-      const auto sigma = options_.sigma.find(name);
+      const auto given = options_.sigma.find(name);
+      const double sigma = given == options_.sigma.end() ? 1 : given->second;
+      const long before = gaps;
       for (std::size_t k = 0; k < table.rows.size(); ++k) {
         const double at = table.rows[k][time], value = table.rows[k][c];
         if (!std::isfinite(at)) throw DataError(fmt::format("{}: row {}: it has no time", file, table.lines[k]));
-        if (std::isnan(value)) continue;
+        if (std::isnan(value)) {
+          ++gaps;
+          continue;
+        }
         if (std::isinf(value))
           throw DataError(fmt::format("{}: row {}: {} is infinite; leave the field empty", file, table.lines[k], name));
-        out.push_back({node_at(at, nodes_, file, table.lines[k]), at, number_of(name), *column, value,
-                       sigma == options_.sigma.end() ? 1 : sigma->second});
+        if (!(std::abs(value) < largest * sigma))
+          throw DataError(
+              fmt::format("{}: row {}: {} = {:g} is beyond {:g} sigma, whose squares are no numbers; leave "
+                          "the field empty, or measure in another unit",
+                          file, table.lines[k], name, value, largest));
+        out.push_back({node_at(at, nodes_, file, table.lines[k]), at, number_of(name), *column, value, sigma});
       }
+      if (gaps > before)
+        fit_.notes.push_back(fmt::format("{}: of {} {} of {} fields are empty or NaN, and are left out", file, name,
+                                         gaps - before, table.rows.size()));
     }
+    if (out.empty() && gaps > 0) throw DataError(fmt::format("{}: all fields that count are empty or NaN", file));
     if (out.empty())
       throw DataError(
           fmt::format("{}: nothing in it is a column of the run; there are {}", file, fmt::join(names(), ", ")));
@@ -130,7 +150,8 @@ class Reader {
     const bool is_chosen = options_.columns.empty() ||
                            std::find(options_.columns.begin(), options_.columns.end(), name) != options_.columns.end();
     if (is_known && is_chosen) return column_of(name);
-    if (std::find(fit_.ignored.begin(), fit_.ignored.end(), name) == fit_.ignored.end()) fit_.ignored.push_back(name);
+    std::vector<std::string>& unused = is_known ? fit_.left_out : fit_.ignored;
+    if (std::find(unused.begin(), unused.end(), name) == unused.end()) unused.push_back(name);
     return std::nullopt;
   }
 

@@ -3,10 +3,10 @@
 ///
 ///     const std::vector<MeasuredRun> runs = read_measured(subject, {"run.csv"}, options, fit);
 ///
-/// Adds to the fit the columns that are used, and the names of those that are not. Errors: DataError, one line, for
-/// files that cannot be read, times that are not those of nodes and columns of which nothing is measured;
-/// GradientRefused for columns that are none of the run, for runs between two ends, and for events of which `begin`
-/// knows nothing.
+/// Adds to the fit the columns that are used, the names of those that are not, and notes on gaps. Errors: DataError,
+/// one line, for files that cannot be read, times that are not those of nodes, numbers too large to be squared and
+/// columns of which nothing is measured; GradientRefused for columns that are none of the run, for runs between two
+/// ends, and for events of which `begin` knows nothing.
 
 #include "fit.hpp"
 

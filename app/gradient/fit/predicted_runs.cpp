@@ -98,6 +98,8 @@ void PredictedRuns::fail(std::size_t run, const LinearisedMotion& motion) {
 
 void PredictedRuns::predict(std::size_t run, std::size_t first, bool with_derivatives) try {
   const std::vector<Nudge> nudges = nudges_of(run);
+  if (subject_.refusal) failure_ = subject_.refusal(nudges);
+  if (!failure_.empty()) return;
   auto motion = subject_.begin(with_derivatives ? names_of(subject_, columns_) : std::vector<std::string>(), nudges);
   const Eigen::Index states = motion->states();
   Eigen::MatrixXd directions =

@@ -7,8 +7,8 @@
 ///     if (runs.is_defined()) use(runs.predicted(0), runs.derivatives(0));
 ///
 /// Where steps vary, what is measured between nodes is reached by a part of a step. Requires the subject and its
-/// columns to outlive it. A run that fails is told by `failure`, and so is an event that has no derivative; what else
-/// has none throws.
+/// columns to outlive it. A run that fails is told by `failure`, and so is one that scenes refuse and an event that has
+/// no derivative; what else has none throws.
 
 #include "measured.hpp"
 

@@ -1,7 +1,6 @@
 #include "learned_scene.hpp"
 
 #include "../../reading/kinds.hpp"
-#include "model_file.hpp"
 
 #include <lagroid/solvers/learning/measures.hpp>
 
@@ -20,6 +19,8 @@ class LearnedSystem final : public SphereSystem {
  public:
   LearnedSystem(LearnedHamiltonian learned, std::filesystem::path file)
       : learned_(std::move(learned)), file_(std::move(file)) {}
+
+  const LearnedHamiltonian& learned() const { return learned_; }
 
   std::string_view name() const override { return keys::learned_hamiltonian; }
   std::vector<SphereForm> forms() const override { return learned_forms; }
@@ -70,10 +71,19 @@ std::unique_ptr<SphereSystem> read_learned_hamiltonian(const Section& scene) {
       throw ModelError(
           fmt::format("{}: a model on {}, no spheres; run the learned.toml that lagroid learn left beside it",
                       file.string(), to_string(learned.model->space())));
-    return std::make_unique<LearnedSystem>(std::move(learned), file);
+    return system_of(std::move(learned), file);
   } catch (const ModelError& error) {
     parameters.fail("model", error.what());
   }
+}
+
+std::unique_ptr<SphereSystem> system_of(LearnedHamiltonian learned, std::filesystem::path file) {
+  return std::make_unique<LearnedSystem>(std::move(learned), std::move(file));
+}
+
+const LearnedHamiltonian* learned_of(const SphereSystem& system) {
+  const auto* of = dynamic_cast<const LearnedSystem*>(&system);
+  return of == nullptr ? nullptr : &of->learned();
 }
 
 }  // namespace lagroid::app

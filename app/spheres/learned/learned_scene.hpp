@@ -2,6 +2,7 @@
 /// Scenes of learned Hamiltonians.
 
 #include "../sphere_system.hpp"
+#include "model_file.hpp"
 
 namespace lagroid::app {
 
@@ -18,5 +19,8 @@ inline const std::vector<SphereForm> learned_forms{SphereForm::momenta};
 
 /// [parameters] model = "model.json", as `lagroid learn --out` left it; seen from the working folder.
 std::unique_ptr<SphereSystem> read_learned_hamiltonian(const Section& scene);
+std::unique_ptr<SphereSystem> system_of(LearnedHamiltonian learned, std::filesystem::path file);
+/// What was learned of such a system; null where the system is another.
+const LearnedHamiltonian* learned_of(const SphereSystem& system);
 
 }  // namespace lagroid::app

@@ -39,6 +39,25 @@ TEST_F(Events, SetParameters) {
                  "\"x\" changes the motion or ends it");
 }
 
+/// A top whose inertia an event makes unequal has no axial momentum to keep from there.
+TEST_F(Events, ThatEndASymmetryEndItsPromise) {
+  const auto verdict = [&](const std::string& inertia) {
+    const fs::path out = folder_ / "top";
+    fs::remove_all(out);
+    const Outcome r =
+        run("run " +
+            with("heavy_top",
+                 "[[event]]\nname = \"bent\"\nwhen = \"t - 0.5005\"\nset = [\"inertia.0 = " + inertia + "\"]\n") +
+            " --set time.steps=200 --out " + out.string());
+    EXPECT_EQ(r.code, 0) << r.err << r.out;
+    for (const auto& entry : summary(out).at("ledger").at("entries"))
+      if (entry.at("name") == "axial momentum M3") return entry.at("verdict").get<std::string>();
+    return std::string("no such entry");
+  };
+  EXPECT_EQ(verdict("1.5"), "watched");
+  EXPECT_EQ(verdict("1"), "kept");
+}
+
 /// A bob that is let go on the way flies on a parabola, which variational steps follow exactly.
 const std::string sling = R"toml(name = "sling"
 

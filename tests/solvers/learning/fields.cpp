@@ -7,6 +7,7 @@
 #include <lagroid/solvers/learning/parametric_model.hpp>
 #include <lagroid/solvers/learning/potentials/network_potential.hpp>
 #include <lagroid/solvers/learning/potentials/polynomial_potential.hpp>
+#include <lagroid/systems/spheres/linearised_sphere_motion.hpp>
 #include <lagroid/systems/spheres/sphere_hamiltonian.hpp>
 
 #include <gtest/gtest.h>
@@ -186,6 +187,51 @@ TEST(Derivatives, ArePredictedWithManyBodies) {
   dynamic.differentiate(theta, schedule, starts, w, b);
   EXPECT_LT((z - w).norm(), 1e-14);
   EXPECT_LT((a - b).norm(), 1e-13);
+}
+
+TEST(LearnedDerivatives, OfStepsAndEnergiesAreThoseByTheStateToo) {
+  std::vector<std::unique_ptr<Model>> models;
+  models.push_back(polynomial_model(1, 2));
+  models.push_back(network_model(2, {4, 3}, Dissipation::rayleigh));
+  models.push_back(polynomial_model(3, 1));
+  for (const auto& model : models) {
+    const int k = model->bodies();
+    const VectorXd theta = 0.3 * random_vector(model->size(), 3);
+    const std::vector<Eigen::Index> places{0, model->size() - 1};
+    const CotangentSpheres<Eigen::Dynamic>::Point start = random_state(k, 4).reshaped(6, k);
+    auto moved = start;
+    MatrixXd along = MatrixXd::Zero(6 * k + 2, 4 * k + 2);
+    along.topLeftCorner(6 * k, 4 * k) = tangent_directions(start, VectorXd::Zero(4 * k), moved);
+    along.bottomRightCorner(2, 2).setIdentity();
+    const auto derivatives = model->derivatives(theta, places);
+    for (const LieGroupMethod& method : lie_group_methods::all) {
+      // Where a step leads to, and the energy at its start.
+      const auto at = [&](Eigen::Index column, double by) {
+        VectorXd numbers = theta;
+        VectorXd coordinates = VectorXd::Zero(4 * k);
+        (column < 4 * k ? coordinates(column) : numbers(places[std::size_t(column - 4 * k)])) += by;
+        tangent_directions(start, coordinates, moved);
+        MatrixXd z(6 * k, 1);
+        model->predict(numbers, {method, 0.1}, moved.reshaped(), z);
+        VectorXd out(6 * k + 1);
+        out << z, model->energy(numbers, moved.reshaped());
+        return out;
+      };
+      MatrixXd step, energy, all(6 * k + 1, 4 * k + 2);
+      CotangentSpheres<Eigen::Dynamic>::Point end;
+      derivatives->step(start, &method, 0.1, 0, end, step);
+      EXPECT_LT((end.reshaped() - at(0, 0).head(6 * k)).norm(), 1e-13) << method.name;
+      EXPECT_NEAR(derivatives->energy(start, energy), model->energy(theta, start.reshaped()), 1e-14);
+      all << step * along, energy * along;
+      for (Eigen::Index column = 0; column < all.cols(); ++column) {
+        constexpr double d = 1e-3;
+        const VectorXd difference =
+            (8 * (at(column, d) - at(column, -d)) - (at(column, 2 * d) - at(column, -2 * d))) / (12 * d);
+        EXPECT_LT((all.col(column) - difference).norm(), 1e-9 * (1 + difference.norm()))
+            << model->name() << method.name << column;
+      }
+    }
+  }
 }
 
 TEST(Compressed, KeepsWhatLeastSquaresNeeds) {

@@ -4,6 +4,7 @@
 
 #include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
 #include <lagroid/solvers/testing/sensitivity_laws.hpp>
+#include <lagroid/systems/control/plate_ball.hpp>
 #include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/pendulums/pendulum.hpp>
 #include <lagroid/systems/pendulums/spherical_pendulum.hpp>
@@ -14,6 +15,7 @@
 
 #include <functional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace lagroid::sensitivity_controlled_tests {
@@ -106,6 +108,15 @@ TEST(ControlledSensitivities, OnGroupoidsWithABracketToo) {
   top.system.weight = {0.2, 0.1, 1};
   top.system.h = 0.05;
   expect_differences(top);
+}
+TEST(ControlledSensitivities, OfOptimalControlToo) {
+  Case<PlateBall> ball{{}, {}, {"radius", "plate_rate", "spin"}};
+  ball.system.h = 0.05;
+  ball.system.plate_rate = 0.4;
+  ball.system.spin = 0.3;
+  std::get<0>(ball.start.object) = {0.2, 0.1};
+  ball.start.momentum << 0.3, -0.2, 0.5, 0.4, 0.2;
+  expect_differences(ball);
 }
 TEST(ControlledSensitivities, WithConstraintsOfPlacesToo) {
   Case<SphericalPendulum> pendulum{{}, {}, {"mass", "gravity"}};

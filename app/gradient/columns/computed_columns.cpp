@@ -1,6 +1,6 @@
 #include "computed_columns.hpp"
 
-#include "gradient_table.hpp"
+#include "../gradient_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -102,6 +102,9 @@ ComputedNumber::ComputedNumber(const NamedText& text, const std::vector<std::str
 }
 
 double ComputedNumber::evaluate(const std::vector<double>& numbers) {
+  if (numbers.size() != numbers_.size())
+    throw std::logic_error(fmt::format("an expression of {} numbers is given {}: this is a fault of the program",
+                                       numbers_.size(), numbers.size()));
   std::copy(numbers.begin(), numbers.end(), numbers_.begin());  // the expression reads them there
   return expression_->differentiate(by_.data());
 }

@@ -6,7 +6,7 @@
 /// Names in a text are columns of the run, earlier ones of these, `t`, and parameters.NAME. Errors: GradientRefused,
 /// one line, for a name that is taken and for a text that is no expression of these.
 
-#include "gradient_subject.hpp"
+#include "../gradient_subject.hpp"
 
 #include <lagroid/run/expressions/expression.hpp>
 
@@ -25,7 +25,7 @@ class ComputedNumber {
  public:
   ComputedNumber(const NamedText& text, const std::vector<std::string>& names);
 
-  /// Of as many numbers as there are names.
+  /// Of as many numbers as there are names; throws std::logic_error for any other count.
   double evaluate(const std::vector<double>& numbers);
   /// Which of them it depends on, and after an evaluation its derivatives by these.
   const std::vector<std::size_t>& used() const { return used_; }

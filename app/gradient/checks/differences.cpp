@@ -1,0 +1,219 @@
+#include "differences.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+namespace {
+
+using ValuesAt = std::function<std::optional<Eigen::VectorXd>(double)>;
+
+/// By central differences of runs, three widths, extrapolated, and by how much the last extrapolation changed it.
+struct Difference {
+  Eigen::ArrayXd value;
+  Eigen::ArrayXd correction;
+};
+/// None where one of the runs has no values.
+std::optional<Difference> difference(const ValuesAt& values, double width) {
+  std::vector<Eigen::VectorXd> row;
+  for (int level = 0; level < 3; ++level, width /= 2) {
+    const auto above = values(width), below = values(-width);
+    if (!above || !below) return std::nullopt;
+    Eigen::VectorXd next = (*above - *below) / (2 * width);
+    double power = 4;
+    for (Eigen::VectorXd& each : row) {
+      const Eigen::VectorXd better = next + (next - each) / (power - 1);
+      each = std::exchange(next, better);
+      power *= 4;
+    }
+    row.push_back(next);
+  }
+  return Difference{row[2].array(), (row[2] - row[1]).array().abs()};
+}
+
+/// The unit of what a row shows.
+std::string unit_of_row(const GradientSubject& subject, const GradientTable& table, std::size_t row) {
+  const int column = table.event_rows.empty() ? table.observed[row] : table.event_rows[row].column;
+  return column < 0 ? "t" : unit_of(subject.observed[std::size_t(column)]);
+}
+
+constexpr double usual_size = 1e-2;
+/// The change of column j by which some row changes by a hundredth of its size: the unit of a number that is zero.
+double size_by_what_it_does(const GradientTable& table, const Eigen::ArrayXd& scales, Eigen::Index j) {
+  std::map<double, double> largest;  // the derivative, by the size that rows of a unit share
+  for (Eigen::Index i = 0; i < scales.size(); ++i)
+    largest[scales(i)] = std::max(largest[scales(i)], std::abs(table.derivatives(i, j)));
+  double size = std::numeric_limits<double>::infinity();
+  for (const auto& [scale, slope] : largest)
+    if (scale > 0 && slope > 0) size = std::min(size, 1e-2 * scale / slope);
+  return std::isfinite(size) ? size : usual_size;
+}
+/// That of a number of the start, or a hundredth of the largest in its group: their unit is one. Zero where all are.
+double size_of_start(const GradientSubject& subject, std::size_t index) {
+  double largest = 0;
+  for (std::size_t i = 0; i < subject.start.size(); ++i)
+    if (subject.start[i].group == subject.start[index].group) largest = std::max(largest, std::abs(subject.sizes[i]));
+  return std::max(std::abs(subject.sizes[index]), 1e-2 * largest);
+}
+
+/// One column beside differences of it; numbers are changes of rows where the column changes by its own size.
+struct Compared {
+  bool at_all = false;
+  double size = 0;
+  Eigen::ArrayXd difference = {};  ///< those that agree best
+  Eigen::ArrayXd off = {};         ///< by how much these do not
+  Eigen::ArrayXd error = {};       ///< to which they are known
+  Eigen::Array<bool, Eigen::Dynamic, 1> agrees = {};
+  Eigen::Array<bool, Eigen::Dynamic, 1> told_otherwise = {};  ///< by some that are known
+};
+
+/// What is alike for all columns.
+struct RowScales {
+  Eigen::ArrayXd scales;  ///< of values
+  Eigen::ArrayXd noise;   ///< of values
+  Eigen::ArrayXd most;    ///< the largest change of each by a column's size
+};
+
+constexpr double known = 0.1;     ///< to so much of the largest in its row a difference tells something
+constexpr double agreed = 1e-5;   ///< of that: differences that are off by less are no contradiction
+constexpr double settled = 1e-9;  ///< of that: no others are tried
+
+/// Of differences, one after another: of the usual width, and narrower ones. Where some row is steep, it changes by
+/// its own size where the number changes by less than its.
+std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows, double size) {
+  constexpr double usual = 2e-3;
+  const double steepest = size * (rows.scales > 0).select(exact.abs() / rows.scales, 0.0).maxCoeff();
+  std::vector<double> out{usual * size};
+  if (steepest > 3)
+    for (const double narrower : {1.0, 0.1}) out.push_back(narrower * usual * size / steepest);
+  for (const double narrower : {0.1, 0.01, 0.001}) out.push_back(narrower * usual * size);
+  return out;
+}
+
+/// Of a column of derivatives, at a size of its number.
+Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, const ValuesAt& values, double size) {
+  const Eigen::Index count = exact.size();
+  Compared out{.size = size};
+  out.agrees.setConstant(count, false);
+  out.told_otherwise.setConstant(count, false);
+  for (const double width : widths_of(exact, rows, size)) {
+    const auto found = difference(values, width);
+    if (!found) continue;
+    const Eigen::ArrayXd off = (found->value - exact).abs() * size;
+    const Eigen::ArrayXd error = 10 * (found->correction + rows.noise / width) * size;
+    const Eigen::ArrayXd most = rows.most.max(found->value.abs() * size).max(1e-3 * rows.scales);
+    const auto is_known = error <= known * most;
+    out.agrees = out.agrees || (is_known && off <= error) || off <= agreed * most;
+    out.told_otherwise = out.told_otherwise || (is_known && off > error);
+    if (!std::exchange(out.at_all, true)) {
+      out.difference = found->value;
+      out.off = off;
+      out.error = error;
+    } else {
+      const Eigen::Array<bool, Eigen::Dynamic, 1> nearer = off < out.off;
+      out.difference = nearer.select(found->value, out.difference).eval();
+      out.error = nearer.select(error, out.error).eval();
+      out.off = nearer.select(off, out.off).eval();
+    }
+    if ((out.off <= settled * most).all()) break;
+  }
+  return out;
+}
+
+Eigen::ArrayXd scales_of_rows(const GradientSubject& subject, const GradientTable& table, const ValuesAreKnown& is) {
+  std::map<std::string, double> units;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const std::string unit = unit_of_row(subject, table, i);
+    const auto of_run = is.sizes.find(unit);
+    double& most = units[unit];
+    most = std::max({most, std::abs(table.values(Eigen::Index(i))), of_run == is.sizes.end() ? 0 : of_run->second});
+  }
+  Eigen::ArrayXd out(table.values.size());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) out(Eigen::Index(i)) = units[unit_of_row(subject, table, i)];
+  return out;
+}
+
+/// To how many digits all that could be compared agrees, or how many the rounding of differences leaves.
+void count_digits(const std::vector<Compared>& columns, const RowScales& rows, GradientTable& table) {
+  table.within_rounding = true;
+  double fewest = 16, of_rounding = 0;
+  for (Eigen::Index i = 0; i < rows.most.size(); ++i) {
+    double off = 0, error = 0, most = 0;
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      const Compared& column = columns[j];
+      if (!column.agrees(i) && !column.told_otherwise(i)) continue;
+      off = std::max(off, column.off(i));
+      error = std::max(error, column.error(i));
+      most = std::max(most, std::abs(table.derivatives(i, Eigen::Index(j))) * column.size);
+    }
+    // Of a row that depends on nothing all that can be told is that.
+    const bool is_nothing = most <= error && off <= error;
+    const double least = is_nothing ? error : 1e-12 * rows.scales(i);
+    if (least > 0)
+      of_rounding = std::max(of_rounding, std::log10(std::max(1.0, (is_nothing ? rows.scales(i) : most) / least)));
+    if (off <= least) continue;
+    table.within_rounding = false;
+    fewest = std::min(fewest, std::max(0.0, std::log10(most / off)));
+  }
+  table.digits_agreed = table.within_rounding ? std::min(16.0, of_rounding) : fewest;
+}
+
+}  // namespace
+
+void compare_with_differences(const GradientSubject& subject, const GradientColumns& columns, GradientTable& table,
+                              const std::function<std::optional<Eigen::VectorXd>(const std::vector<Nudge>&)>& values,
+                              const ValuesAreKnown& is) {
+  const auto count = table.derivatives.cols();
+  RowScales rows{scales_of_rows(subject, table, is), {}, Eigen::ArrayXd::Zero(table.values.size())};
+  rows.noise = (2 * std::numeric_limits<double>::epsilon() * is.growth + is.tolerance) * rows.scales;
+  std::vector<Nudge> nudges(static_cast<std::size_t>(count));
+  std::vector<double> sizes, of_numbers;
+  for (std::size_t j = 0; j < nudges.size(); ++j) {
+    const bool of_start = j < columns.start.size();
+    const int index = of_start ? columns.start[j] : columns.parameters[j - columns.start.size()];
+    if (of_start) {
+      nudges[j].index = index;
+      of_numbers.push_back(size_of_start(subject, std::size_t(index)));
+    } else {
+      nudges[j].parameter = subject.parameters[std::size_t(index)].name;
+      of_numbers.push_back(std::abs(subject.sizes[subject.start.size() + std::size_t(index)]));
+    }
+    const auto at = Eigen::Index(j);
+    sizes.push_back(of_numbers.back() != 0 ? of_numbers.back() : size_by_what_it_does(table, rows.scales, at));
+    if (of_numbers.back() != 0) rows.most = rows.most.max(table.derivatives.col(at).array().abs() * sizes.back());
+  }
+  table.differences.resize(table.derivatives.rows(), count);
+  std::vector<Compared> found;
+  for (std::size_t j = 0; j < nudges.size(); ++j) {
+    const Eigen::ArrayXd exact = table.derivatives.col(Eigen::Index(j)).array();
+    const auto nudged = [&](double by) {
+      nudges[j].by = by;
+      return values({nudges[j]});
+    };
+    Compared compared = compare_column(exact, rows, nudged, sizes[j]);
+    // A derivative that is rounding says nothing of sizes.
+    if (of_numbers[j] == 0 && !(compared.at_all && compared.agrees.all()))
+      if (Compared usual = compare_column(exact, rows, nudged, usual_size); usual.at_all) compared = std::move(usual);
+    if (!compared.at_all)
+      throw GradientRefused(
+          fmt::format("--check: runs beside this one, from another {}, end early or have other events; leave it out",
+                      table.columns[j]));
+    table.differences.col(Eigen::Index(j)) = compared.difference;
+    for (std::size_t i = 0; i < table.rows.size(); ++i)
+      if (const auto at = Eigen::Index(i); !compared.agrees(at))
+        (compared.told_otherwise(at) ? table.contradicted : table.untold)
+            .push_back(fmt::format("{} by {}", table.rows[i], table.columns[j]));
+    found.push_back(std::move(compared));
+  }
+  count_digits(found, rows, table);
+}
+
+}  // namespace lagroid::app

@@ -1,0 +1,141 @@
+#pragma once
+/// The motion of a scene's system by the scene's steps, linearised: which kinds of steps have derivatives, and by what.
+///
+///     require_derivatives_of_steps<Sys>(value, scene);
+///     const auto motion = motion_of_steps(value, from, {"mass"}, observe);
+///
+/// Errors: SceneError for steps without derivatives. Of a motion WithoutDerivative, then or at its first linearised
+/// step; std::invalid_argument for a reduction that another system does not have.
+
+#include "../scenes/simulation.hpp"
+#include "gradient_subject.hpp"
+
+#include <lagroid/solvers/integrators/composition.hpp>
+#include <lagroid/solvers/sensitivity/explicit/linearised_extrapolation.hpp>
+#include <lagroid/solvers/sensitivity/explicit/linearised_runge_kutta.hpp>
+#include <lagroid/solvers/sensitivity/explicit/linearised_splitting.hpp>
+#include <lagroid/solvers/sensitivity/sensitivities.hpp>
+#include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lagroid::app {
+
+/// Where a run begins.
+template <DiscreteSystem Sys> struct Started {
+  Sys system;
+  State<typename Sys::GroupoidType> start;
+  ArrowOf<typename Sys::GroupoidType> configuration;
+};
+
+namespace differentiating {
+
+template <DiscreteSystem Sys>
+std::unique_ptr<Integrator<Sys>> integrator_of(const Started<Sys>& from, const Composition& composition) {
+  if constexpr (StepDependent<Sys>)
+    if (composition.stages() > 1)
+      return std::make_unique<lagroid::detail::IntegratorOf<Sys, CompositionIntegrator<Sys>>>(
+          from.system, from.start, from.configuration, composition, [] { return std::make_unique<NewtonStep<Sys>>(); });
+  SensitivityOptions<Sys> options;
+  options.configuration = from.configuration;
+  return lagroid::detail::newton_integrator(from.system, from.start, options);
+}
+
+/// By steps that vary, observed with the time after object and momentum.
+template <TimeMode mode, DiscreteSystem Sys, class Observe>
+std::unique_ptr<LinearisedMotion> timed_motion(const Started<Sys>& from, const std::vector<std::string>& parameters,
+                                               const Observe& observe) {
+  if constexpr (TimedDerivatives<Sys, mode>) {
+    const auto with_time = [observe](const ObservedTimedNode<Sys>& node) {
+      constexpr int first = Sys::GroupoidType::object_coordinate_count() + Sys::dimension;
+      const VariedVector seen = observe(node);
+      VariedVector all(seen.size() + 1);
+      all << seen.head(first), node.time, seen.tail(seen.size() - first);
+      return all;
+    };
+    return std::make_unique<TimedMotion<Sys, mode>>(from.system, from.start, from.configuration, parameters, with_time);
+  } else {
+    return nullptr;  // no scene of this system has such steps
+  }
+}
+
+/// By explicit steps of equal size.
+template <DiscreteSystem Sys, class Observe>
+std::unique_ptr<LinearisedMotion> explicit_motion(const IntegratorOptions& options, const Started<Sys>& from,
+                                                  const std::vector<std::string>& parameters, const Observe& observe) {
+  if constexpr (HasVariedRates<Sys>)
+    if (options.fixed == StepKind::runge_kutta)
+      return std::make_unique<LinearisedRungeKutta<Sys>>(from.system, from.start, from.configuration, parameters,
+                                                         observe);
+  if constexpr (SplitSystem<Sys>)
+    if (options.fixed == StepKind::splitting)
+      return std::make_unique<LinearisedSplitting<Sys>>(from.system, from.start, from.configuration,
+                                                        options.composition, parameters, observe);
+  if constexpr (SplitSystem<Sys>)
+    if (options.fixed == StepKind::extrapolation)
+      return std::make_unique<LinearisedExtrapolation<Sys>>(from.system, from.start, from.configuration,
+                                                            options.tolerance, parameters, observe);
+  return nullptr;  // no scene of this system has such steps
+}
+
+}  // namespace differentiating
+
+/// Whether steps are those of the discrete Lagrangian, of equal size and of one arrow each.
+template <DiscreteSystem Sys> bool by_single_steps(const StatedInitialValue<Sys>& value) {
+  const IntegratorOptions& options = value.choice.options;
+  return options.mode == TimeMode::fixed && options.fixed == StepKind::variational &&
+         options.composition.stages() == 1 && !value.reduced;
+}
+
+template <DiscreteSystem Sys>
+void require_derivatives_of_steps(const StatedInitialValue<Sys>& value, const Section& scene) {
+  const IntegratorChoice& choice = value.choice;
+  const IntegratorOptions& options = choice.options;
+  if (value.reduced) {
+    if (!by_newton_steps(choice))
+      scene.fail("time",
+                 "gradient takes reduced runs by equal steps of a given size, perhaps composed, solved by Newton to "
+                 "round-off; leave out other modes and methods, accuracy and [solver], or reduce");
+    return;
+  }
+  if (!solved_by_newton(choice) && !(options.mode == TimeMode::fixed && options.fixed != StepKind::variational))
+    scene.fail(
+        "time",
+        "gradient takes equal steps, perhaps composed, and adaptive, prescribed or controlled ones, solved by "
+        "Newton to round-off, and explicit ones of equal size; leave out other modes, without_root and [solver]");
+  if (options.fixed == StepKind::runge_kutta && !HasVariedRates<Sys>)
+    scene.fail("time", "the rates of this system have no derivatives; leave out method = \"runge-kutta\"");
+  if (options.fixed == StepKind::extrapolation && Sys::object_constraints > 0)
+    scene.fail(
+        "time",
+        "extrapolated steps have derivatives along constraints of places alone, off which inner steps are others; "
+        "take method = \"splitting\"");
+  if (options.mode == TimeMode::controlled && !TimedDerivatives<Sys, TimeMode::controlled>)
+    scene.fail("time",
+               "the time scale by which steps of this system are controlled has no derivatives; take "
+               "mode = \"adaptive\" or equal steps");
+}
+
+template <DiscreteSystem Sys, class Observe>
+std::unique_ptr<LinearisedMotion> motion_of_steps(const StatedInitialValue<Sys>& value, const Started<Sys>& from,
+                                                  const std::vector<std::string>& parameters, const Observe& observe) {
+  const IntegratorOptions& options = value.choice.options;
+  if (options.mode == TimeMode::adaptive)
+    return differentiating::timed_motion<TimeMode::adaptive>(from, parameters, observe);
+  if (options.mode == TimeMode::prescribed)
+    return differentiating::timed_motion<TimeMode::prescribed>(from, parameters, observe);
+  if (options.mode == TimeMode::controlled)
+    return differentiating::timed_motion<TimeMode::controlled>(from, parameters, observe);
+  if (options.fixed != StepKind::variational)
+    return differentiating::explicit_motion(options, from, parameters, observe);
+  // Steps of a reduced run are those of the full one, found on a smaller groupoid: at their solutions the equations of
+  // the full system hold, and its derivatives are theirs.
+  auto integrator = value.reduced ? value.reduced(from.system, from.start, from.configuration)
+                                  : differentiating::integrator_of(from, options.composition);
+  return std::make_unique<LinearisedMotionOf<Sys>>(from.system, std::move(integrator), parameters, observe);
+}
+
+}  // namespace lagroid::app
