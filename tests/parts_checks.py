@@ -92,6 +92,36 @@ class Checks(unittest.TestCase):
             for mode in ("fixed", "controlled", "prescribed"):
                 self.assertAlmostEqual(growths["tiny", mode] / growths["si", mode], 1, delta=1e-6, msg=str(growths))
 
+    def test_growth_at_rest_is_that_of_what_has_a_size(self):
+        # At the upper equilibrium momenta are round-off of the angle; a small one is a momentum.
+        def upright(momentum):
+            return told("pendulum", examples / "pendulum.toml", "--of", "final.q", "--wrt", "initial.q", "--check", "--set",
+                        "time.steps=50", "--set", "initial.position=[3.141592653589793]", "--set", f"initial.momentum=[{momentum}]")
+        rest = upright(0)
+        self.assertAlmostEqual(rest["growth"] / rest["derivatives"][0][0], 1, delta=1e-6)
+        self.assertEqual((rest["contradicted"], rest["untold"]), ([], []))
+        self.assertGreater(rest["digits_agreed"], 8)
+        self.assertGreater(upright(1e-9)["growth"], 1e8)
+        hanging = told("spheres", examples / "pendulum_chain.toml", "--of", "final.x3", "--set", "time.steps=50", "--set",
+                       "initial={theta=[3.141592653589793,3.141592653589793,3.141592653589793],phi=[0,0,0],"
+                       "angular_velocities=[[0,0,0],[0,0,0],[0,0,0]]}")
+        self.assertLess(hanging["growth"], 1e3)
+
+    def test_inner_steps_of_a_tolerance_are_known_to_it(self):
+        chain = ("spheres", examples / "pendulum_chain.toml", "--set", "time.step=0.05", "--set", "time.steps=40", "--of", "final.x3",
+                 "--wrt", "parameters", "--check")
+        for method in ("extrapolation", "munthe-kaas-54"):
+            for tolerance in (1e-2, 1e-4, 1e-6, 1e-10):
+                found = told(*chain, "--set", f"time.method={method}", "--set", f"time.tolerance={tolerance}")
+                self.assertEqual(found["contradicted"], [], (method, tolerance))
+                self.assertEqual(found["untold"] == [], tolerance < 1e-9, (method, tolerance))
+                self.assertLessEqual(found["digits_left"], -math.log10(tolerance), (method, tolerance))
+        done = run(of_part("kepler"), "gradient", examples / "kepler.toml", "--set", "time.method=extrapolation", "--set",
+                   "time.tolerance=1e-3", "--set", "time.step=0.5", "--set", "time.steps=10", "--of", "final.x,final.y", "--check")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("cannot tell", done.stdout)
+        self.assertNotIn("0.0 digits", done.stdout)
+
     def test_a_check_and_a_tolerance_are_not_ignored(self):
         done = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--deviations", "initial.p=0.1", "--check")
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)

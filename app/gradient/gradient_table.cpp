@@ -190,11 +190,16 @@ GradientTable table_of(const GradientSubject& subject, const std::vector<std::st
   return out;
 }
 
-void set_growth(GradientTable& table, double growth) {
+/// Of sixteen.
+static double digits_left_by(double growth) {
   Propagated propagated;
-  propagated.growth = std::max(1.0, growth);
-  table.growth = propagated.growth;
-  table.digits_left = propagated.digits_left();
+  propagated.growth = growth;
+  return propagated.digits_left();
+}
+
+void set_growth(GradientTable& table, double growth) {
+  table.growth = std::max(1.0, growth);
+  table.digits_left = digits_left_by(table.growth);
 }
 
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words) {
@@ -310,6 +315,8 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
       out.derivatives.row(at) = found.derivatives.row(row);
     }
   }
+  if (subject.tolerance > 0)
+    out.digits_left = std::clamp(-std::log10(subject.tolerance * out.growth), 0.0, out.digits_left);
   fail_where_not_finite(out);
   if (check && out.failure.empty())
     compare_with_differences(subject, columns, out,
@@ -321,8 +328,10 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
 std::string words_of_growth(const GradientTable& table) {
   std::string out = "\n";
   if (!table.of_boundary_value)
-    out += fmt::format("  errors grow {:.3g} times on the way: of sixteen digits {:.1f} are left\n", table.growth,
-                       table.digits_left);
+    out +=
+        fmt::format("  errors grow {:.3g} times on the way: of {} {:.1f} are left\n", table.growth,
+                    table.digits_left < digits_left_by(table.growth) ? "the digits of the tolerance" : "sixteen digits",
+                    table.digits_left);
   for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
   return out;
 }

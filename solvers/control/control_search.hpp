@@ -170,7 +170,8 @@ using ControlSolver =
     std::function<ControlSolution<Sys>(const ControlTask<Sys>&, ControlTrajectory<Sys>, const ControlOptions&)>;
 
 /// Of a task in phases, their stages count and not `stages`. Before each start and in its every iteration
-/// `keep_going(start)` decides whether it goes on.
+/// `keep_going(start)` decides whether it goes on. Where no start converges and durations are free, the same begin
+/// again with four times these: of a motion that must first go away from its end too short a guess shrinks to nothing.
 template <class Sys>
 ControlSearch<Sys> search_control(
     const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {},
@@ -180,6 +181,17 @@ ControlSearch<Sys> search_control(
   ControlSearch<Sys> found;
   search_starts(found, options, keep_going, [&](int start, const ControlOptions& solver) {
     return solve(task, control_guess(task, stages, start, options), solver);
+  });
+  const std::vector<ControlPhase<Sys>> phases = phases_of(task, stages);
+  const bool any_is_free =
+      std::any_of(phases.begin(), phases.end(), [](const auto& phase) { return phase.duration_is_free; });
+  if (!found.minima.empty() || !any_is_free || found.outcomes.contains(ControlStatus::interrupted)) return found;
+  const auto of_these = [&](int start) { return keep_going(options.starts + start); };
+  search_starts(found, options, of_these, [&](int start, const ControlOptions& solver) {
+    ControlTrajectory<Sys> path = control_guess(task, stages, start, options);
+    for (std::size_t p = 0; p < phases.size(); ++p)
+      if (phases[p].duration_is_free) path.phases[p].step *= 4;
+    return solve(task, std::move(path), solver);
   });
   return found;
 }

@@ -31,11 +31,12 @@ void search_starts(Found& found, const Options& options, const std::function<boo
     if (slowest > 0 && options.patience > 0)
       solver.max_iterations = std::min(solver.max_iterations, std::max(least, int(options.patience * slowest)));
     auto solution = solve(i, solver);
+    const bool is_first = found.outcomes.empty();
     ++found.outcomes[solution.report.status];
     found.iterations += solution.report.iterations;
     const bool is_last = solution.report.status == ControlStatus::interrupted;
     if (!solution.report.converged()) {
-      if (i == 0 || !(found.best_failure.report.violation <= solution.report.violation))
+      if (is_first || !(found.best_failure.report.violation <= solution.report.violation))
         found.best_failure = std::move(solution);
       if (is_last) break;
       continue;

@@ -53,7 +53,8 @@ std::vector<std::string> repeated_in_words(const ControlResult& found) {
     std::vector<std::string> of;
     for (const int row : each.of) of.push_back(equality_name(found, each.stage, row));
     out.push_back(of.empty() ? fmt::format("{} holds whatever the motion does: leave it out", what)
-                             : fmt::format("{} repeats {}: leave one of them out", what, fmt::join(of, " and ")));
+                             : fmt::format("{} repeats {}: leave one of them out, unless they only touch there", what,
+                                           fmt::join(of, " and ")));
   }
   return out;
 }

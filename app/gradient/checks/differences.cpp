@@ -70,7 +70,7 @@ struct Compared {
   double size = 0;
   Eigen::ArrayXd difference = {};  ///< those that agree best
   Eigen::ArrayXd off = {};         ///< by how much these do not
-  Eigen::ArrayXd error = {};       ///< to which they are known
+  Eigen::ArrayXd error = {};       ///< to which the best known are known
   Eigen::Array<bool, Eigen::Dynamic, 1> agrees = {};
   Eigen::Array<bool, Eigen::Dynamic, 1> told_otherwise = {};  ///< by some that are known
 };
@@ -111,7 +111,8 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
     const Eigen::ArrayXd error = 10 * (found->correction + rows.noise / width) * size;
     const Eigen::ArrayXd most = rows.most.max(found->value.abs() * size).max(1e-3 * rows.scales);
     const auto is_known = error <= known * most;
-    out.agrees = out.agrees || (is_known && off <= error) || off <= agreed * most;
+    const auto tells = error <= most.max(rows.scales);
+    out.agrees = out.agrees || (is_known && off <= error) || (tells && off <= agreed * most);
     out.told_otherwise = out.told_otherwise || (is_known && off > error);
     if (!std::exchange(out.at_all, true)) {
       out.difference = found->value;
@@ -120,7 +121,7 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
     } else {
       const Eigen::Array<bool, Eigen::Dynamic, 1> nearer = off < out.off;
       out.difference = nearer.select(found->value, out.difference).eval();
-      out.error = nearer.select(error, out.error).eval();
+      out.error = out.error.min(error).eval();
       out.off = nearer.select(off, out.off).eval();
     }
     if ((out.off <= settled * most).all()) break;
@@ -147,18 +148,21 @@ void count_digits(const std::vector<Compared>& columns, const RowScales& rows, G
   double fewest = 16, of_rounding = 0;
   for (Eigen::Index i = 0; i < rows.most.size(); ++i) {
     double off = 0, error = 0, most = 0;
+    bool is_told = false;
     for (std::size_t j = 0; j < columns.size(); ++j) {
       const Compared& column = columns[j];
       if (!column.agrees(i) && !column.told_otherwise(i)) continue;
+      is_told = true;
       off = std::max(off, column.off(i));
       error = std::max(error, column.error(i));
       most = std::max(most, std::abs(table.derivatives(i, Eigen::Index(j))) * column.size);
     }
+    if (!is_told) continue;
     // Of a row that depends on nothing all that can be told is that.
     const bool is_nothing = most <= error && off <= error;
     const double least = is_nothing ? error : 1e-12 * rows.scales(i);
-    if (least > 0)
-      of_rounding = std::max(of_rounding, std::log10(std::max(1.0, (is_nothing ? rows.scales(i) : most) / least)));
+    const double digits = least > 0 ? std::log10(std::max(1.0, (is_nothing ? rows.scales(i) : most) / least)) : 16;
+    of_rounding = std::max(of_rounding, digits);
     if (off <= least) continue;
     table.within_rounding = false;
     fewest = std::min(fewest, std::max(0.0, std::log10(most / off)));
@@ -173,7 +177,7 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
                               const ValuesAreKnown& is) {
   const auto count = table.derivatives.cols();
   RowScales rows{scales_of_rows(subject, table, is), {}, Eigen::ArrayXd::Zero(table.values.size())};
-  rows.noise = (2 * std::numeric_limits<double>::epsilon() * is.growth + is.tolerance) * rows.scales;
+  rows.noise = (2 * std::numeric_limits<double>::epsilon() + is.tolerance) * is.growth * rows.scales;
   std::vector<Nudge> nudges(static_cast<std::size_t>(count));
   std::vector<double> sizes, of_numbers;
   for (std::size_t j = 0; j < nudges.size(); ++j) {

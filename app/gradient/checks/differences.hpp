@@ -6,8 +6,8 @@
 ///
 /// Widths are small parts of a number's size, and narrower where that changes rows by more than theirs, as angles far
 /// along a run: entries are compared at one after another until they agree. By the last
-/// extrapolation and by rounding, which grows along the run, a difference is known to so much; an entry that is off by
-/// more wherever differences are known at all is contradicted.
+/// extrapolation, by rounding and by the tolerance of inner steps, which grow along the run, a difference is known to
+/// so much; an entry that is off by more wherever differences are known at all is contradicted.
 ///
 /// Errors: GradientRefused where runs beside this one cannot be compared.
 
@@ -22,8 +22,8 @@ namespace lagroid::app {
 /// How exactly values of runs beside each other are known, over their sizes.
 struct ValuesAreKnown {
   SizesOfUnits sizes = {};  ///< of the run; of others the table's own
-  double growth = 1;        ///< of their rounding
-  double tolerance = 0;     ///< to which runs beside each other are values of one function
+  double growth = 1;        ///< of their rounding, and of errors that a tolerance lets be
+  double tolerance = 0;     ///< of inner steps: to this, grown, runs beside each other are values of one function
 };
 
 /// Adds differences to the table; `values` has its rows of runs from starts that differ, none where these end early.

@@ -2,6 +2,8 @@
 
 #include "../gradient_table.hpp"
 
+#include <lagroid/solvers/sensitivity/propagate.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,6 +36,9 @@ GradientColumns whole_start(const GradientSubject& subject) {
   return out;
 }
 
+/// Of numbers of a start, with some room: values this small beside what these change are no more than their rounding.
+constexpr double rounding = 1e-14;
+
 }  // namespace
 
 std::string unit_of(const GradientName& name) {
@@ -61,7 +66,8 @@ SizesOfUnits sizes_of_run(const GradientSubject& subject) {
   return out;
 }
 
-RunGrowth::RunGrowth(const GradientSubject& subject, SizesOfUnits sizes) : sizes_(std::move(sizes)) {
+RunGrowth::RunGrowth(const GradientSubject& subject, SizesOfUnits sizes)
+    : subject_(&subject), sizes_(std::move(sizes)) {
   for (const GradientName& each : subject.observed) {
     units_.push_back(unit_of(each));
     is_of_state_.push_back(is_of_state(each.group, subject));
@@ -88,13 +94,13 @@ RunGrowth::RunGrowth(const GradientSubject& subject, SizesOfUnits sizes) : sizes
     for (double& x : along_.reshaped()) x = (bits() & 1U) != 0 ? 0.5 : -0.5;
     along_ = (units.asDiagonal() * along_).eval();
   }
-  at_start_ = largest(at_start * along_);
+  at_start_ = at_start * along_;
 }
 
-double RunGrowth::largest(const Eigen::MatrixXd& observed_along) const {
+double RunGrowth::largest(const Eigen::MatrixXd& observed_along, const Units& left_out) const {
   double out = 0;
   for (Eigen::Index i = 0; i < observed_along.rows(); ++i) {
-    if (!is_of_state_[std::size_t(i)]) continue;
+    if (!is_of_state_[std::size_t(i)] || left_out.contains(units_[std::size_t(i)])) continue;
     const double size = sizes_.at(units_[std::size_t(i)]);
     if (!observed_along.row(i).allFinite()) return std::numeric_limits<double>::infinity();
     if (size > 0) out = std::max(out, observed_along.row(i).norm() / size);
@@ -102,8 +108,34 @@ double RunGrowth::largest(const Eigen::MatrixXd& observed_along) const {
   return out;
 }
 
+RunGrowth::Units RunGrowth::units_at_rest() const {
+  const auto motion = subject_->begin({}, {});
+  const Eigen::MatrixXd along = directions_of(*subject_, whole_start(*subject_), {}, motion->states()) * along_;
+  if (subject_->begin_along) subject_->begin_along(*motion, along);
+  const Eigen::VectorXd start = motion->observe().values;
+  const Propagated first = propagate_forward(*motion, 1, along);
+  if (!first.converged()) return {};
+  std::map<std::string, std::pair<double, double>> units;  // the largest number, and by how much a start changes one
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    const auto at = Eigen::Index(i);
+    auto& [number, change] = units[units_[i]];
+    number = std::max({number, std::abs(start(at)), std::abs(first.values(at))});
+    change = std::max(change, first.derivatives.row(at).norm());
+  }
+  Units out;
+  for (const auto& [unit, of] : units)
+    if (of.first <= rounding * of.second) out.insert(unit);
+  return out;
+}
+
+double RunGrowth::factor(const Eigen::MatrixXd& observed_along, const Units& left_out) const {
+  const double before = largest(at_start_, left_out);
+  return before > 0 ? std::max(1.0, largest(observed_along, left_out) / before) : 1;
+}
+
 double RunGrowth::factor(const Eigen::MatrixXd& observed_along) const {
-  return at_start_ > 0 ? std::max(1.0, largest(observed_along) / at_start_) : 1;
+  const double out = factor(observed_along, {});
+  return rounding * out > 1 ? factor(observed_along, units_at_rest()) : out;
 }
 
 }  // namespace lagroid::app

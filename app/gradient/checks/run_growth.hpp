@@ -6,17 +6,21 @@
 ///     growth = max_i |D_i x| / C_g(i)  over the same at the start,
 ///
 /// where i are rows of groups that are the state's own: energies and what else is computed of it have no unit of
-/// theirs.
+/// theirs. Nor has a group that stays at rest, as momenta at an equilibrium: what it has is round-off of other groups,
+/// and so it is where errors grow beyond all digits in its unit and its numbers at the first two nodes are no more than
+/// round-off of the start makes of them in a step. Such groups are left out.
 ///
 ///     const RunGrowth growth(subject, sizes_of_run(subject));
 ///     const double factor = growth.factor(derivatives * growth.along());
 ///
 /// Returns factors from one up, of the run and not of columns. Of starts of many numbers x is taken along a few
-/// directions of random signs, always the same. Nothing throws but what the subject does, and std::logic_error.
+/// directions of random signs, always the same. Requires a subject that outlives it. Nothing throws but what the
+/// subject does, and std::logic_error.
 
 #include "../gradient_subject.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -43,13 +47,17 @@ class RunGrowth {
   double factor(const Eigen::MatrixXd& observed_along) const;
 
  private:
-  double largest(const Eigen::MatrixXd& observed_along) const;
+  using Units = std::set<std::string>;
+  double largest(const Eigen::MatrixXd& observed_along, const Units& left_out) const;
+  double factor(const Eigen::MatrixXd& observed_along, const Units& left_out) const;
+  Units units_at_rest() const;
 
+  const GradientSubject* subject_;
   std::vector<std::string> units_;  ///< of what is observed
   std::vector<bool> is_of_state_;
   SizesOfUnits sizes_;
   Eigen::MatrixXd along_;
-  double at_start_ = 0;
+  Eigen::MatrixXd at_start_;  ///< what is observed there, along these
 };
 
 }  // namespace lagroid::app

@@ -96,7 +96,8 @@ std::optional<GradientSubject> spheres_gradient(const Section& scene) {
     out.parameters.push_back({"parameters", name});
     out.sizes.push_back(value);
   }
-  if (run.options.tolerance > 0)
+  out.tolerance = run.options.tolerance;
+  if (out.tolerance > 0)
     out.notes.emplace_back(
         "derivatives hold the sizes of the inner steps that time.tolerance asks for, and are as exact as "
         "it lets runs be");

@@ -47,7 +47,9 @@ std::string advice_of(ControlStatus status, int max_iterations) {
     case ControlStatus::singular:
       return "no shift makes the KKT matrix that of a minimum: are constraints given twice?";
     case ControlStatus::redundant:
-      return "constraints repeat each other, which leaves their multipliers open: leave out those that are listed";
+      return "constraints repeat each other at this trajectory, which leaves their multipliers open: leave out what "
+             "says the "
+             "same; of curves that only touch, ask for the point where they do";
     case ControlStatus::interrupted:
       return "interrupted; the trajectory is the last iterate";
     case ControlStatus::not_finite:

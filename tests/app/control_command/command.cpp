@@ -1,6 +1,7 @@
 // `lagroid control`: every example, files, refusals, endings.
 #include "../command_line.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -426,6 +427,17 @@ TEST_F(Control, AnEndOfBodiesInsideOfAnObstacleIsRefused) {
 TEST_F(Control, ALoopOfWhatConservesItsEndIsRefused) {
   expect_refused(scene("falling_cat") + " --set loop.samples=3 --set solver.starts=1",
                  "a loop is between states that are given, and M1 is conserved");
+}
+
+// A motion that must first go away from its end: of three seconds, and of what would do, it makes nothing.
+TEST_F(Control, TooShortAGuessOfTheDurationIsMadeLonger) {
+  const double x = -1.192, v = -1.876;
+  const double fastest = -v + 2 * std::sqrt(v * v / 2 - x);  // forward, then back
+  const Outcome r = run(scene("fastest_stop") + fmt::format(" --set 'boundary.start=[{},{}]' --set "
+                                                            "'boundary.end=[0,0]' --set horizon.duration=3 --json",
+                                                            x, v));
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_NEAR(nlohmann::json::parse(r.out).at("cost").get<double>(), fastest, 1e-3);
 }
 
 TEST_F(Control, ItsFolderIsNoRun) {

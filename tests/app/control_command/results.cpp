@@ -42,6 +42,37 @@ class ControlResults : public CommandLine {
   }
 };
 
+// By differences of the cost: exactly of discrete steps, and of flows to half a stage.
+TEST_F(ControlResults, CostatesAreDerivativesOfTheCost) {
+  int runs = 0;
+  const auto out = [&] { return folder_ / ("run" + std::to_string(runs)); };
+  const auto cost = [&](const std::string& name, const std::string& set) {
+    ++runs;
+    const Outcome r = run(scene(name) + " --set solver.starts=1 --json" + set + " --out " + out().string());
+    EXPECT_EQ(r.code, 0) << r.err;
+    return json::parse(r.out).at("cost").get<double>();
+  };
+  const auto by = [&](const std::string& name, const std::string& end) {
+    return (cost(name, " --set boundary." + end + ",0.001]") - cost(name, " --set boundary." + end + ",-0.001]")) /
+           2e-3;
+  };
+  const std::string start = "start=[0", end = "end=[3.141592653589793";
+  /// Of the first stage, or of the last.
+  const auto costate = [&](const std::string& column, bool last) {
+    const auto table = lagroid::app::read_csv_table(out() / "trajectory.csv", "time", lagroid::app::Gaps::allowed);
+    return table.rows.at(last ? table.rows.size() - 2 : 0).at(table.column(column));
+  };
+  cost("pendulum", "");
+  const double source = costate("pmomentum_source", false), target = costate("pmomentum_target", true);
+  EXPECT_NEAR(by("pendulum", start), source, 1e-4);
+  EXPECT_NEAR(by("pendulum", end), -target, 1e-4);
+  cost("swing_up", "");
+  const double first = costate("prate", false), last = costate("prate", true);
+  const double half_a_stage = 0.5 * 10 / 200 * std::abs(costate("pangle", false));  // by which prate changes in it
+  EXPECT_NEAR(by("swing_up", start), -first, 1.1 * half_a_stage);
+  EXPECT_NEAR(by("swing_up", end), last, 1.1 * half_a_stage);
+}
+
 // With few stages where there are many: what is drawn is another matter than what is found.
 TEST_F(ControlResults, EveryExampleHasAPage) {
   for (const auto& entry : fs::directory_iterator(fs::path(LAGROID_EXAMPLES) / "control")) {
@@ -220,7 +251,9 @@ TEST_F(ControlResults, WhatRepeatsIsToldInASentence) {
       run(scene("through_a_gate") + " --set 'boundary.end_on=[\"x - 6\", \"2*x - 12\"]' --set solver.starts=2 --json");
   const json found = json::parse(r.out);
   ASSERT_EQ(found.at("repeated").size(), 1U) << r.out << r.err;
-  EXPECT_EQ(found.at("repeated")[0], "\"2*x - 12\" at the end repeats \"x - 6\" at the end: leave one of them out");
+  EXPECT_EQ(found.at("repeated")[0],
+            "\"2*x - 12\" at the end repeats \"x - 6\" at the end: leave one of them out, unless they only touch "
+            "there");
   EXPECT_TRUE(json::parse(run(scene("through_a_gate") + " --json --set solver.starts=2").out).at("repeated").empty());
   const fs::path twice = write(text_of("arm_of_bodies") +
                                "\n[[constraint]]\nkind = 'disk'\nbody = 'fore'\nat = [0.5, 0, 0]\n"

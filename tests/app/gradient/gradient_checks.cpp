@@ -104,6 +104,27 @@ TEST(GradientChecks, WhereValuesJumpDifferencesCannotTell) {
   EXPECT_NE(text_of(found).find("cannot tell"), std::string::npos);
 }
 
+TEST(GradientChecks, RunsByATolerancePromiseNoMoreThanItLets) {
+  // Inner steps of their own change runs by as much as the tolerance lets them, and derivatives with these.
+  const GradientSubject subject = subject_of(Valley());
+  for (const double tolerance : {1e-3, 1e-4, 1e-8}) {
+    GradientSubject loose = exaggerated(subject, 1 + tolerance);
+    EXPECT_NE(differentiate(loose, {"final"}, all, /*check=*/true).contradicted, Names{}) << tolerance;
+    loose.tolerance = tolerance;
+    const GradientTable found = differentiate(loose, {"final"}, all, /*check=*/true);
+    EXPECT_EQ(found.contradicted, Names{}) << tolerance;
+    EXPECT_LT(found.digits_left, -std::log10(tolerance));
+    EXPECT_NE(text_of(found).find("of the digits of the tolerance"), std::string::npos);
+    EXPECT_EQ(text_of(found).find("leaves 0.0 digits"), std::string::npos);
+  }
+  // A loose one knows nothing, a tight one sees what is wrong by more.
+  GradientSubject wrong = exaggerated(subject, 1.5);
+  wrong.tolerance = 1e-2;
+  EXPECT_NE(text_of(differentiate(wrong, {"final"}, all, /*check=*/true)).find("cannot tell"), std::string::npos);
+  wrong.tolerance = 1e-9;
+  EXPECT_GT(differentiate(wrong, {"final"}, all, /*check=*/true).contradicted.size(), 14u);
+}
+
 TEST(GradientChecks, NothingIsToldAgainstDerivativesThatAreRounding) {
   const GradientSubject subject =
       with_columns(subject_of(Valley()),

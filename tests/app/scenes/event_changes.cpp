@@ -50,7 +50,8 @@ TEST_F(Events, ThatEndASymmetryEndItsPromise) {
                  "[[event]]\nname = \"bent\"\nwhen = \"t - 0.5005\"\nset = [\"inertia.0 = " + inertia + "\"]\n") +
             " --set time.steps=200 --out " + out.string());
     EXPECT_EQ(r.code, 0) << r.err << r.out;
-    for (const auto& entry : summary(out).at("ledger").at("entries"))
+    const Json told = summary(out);
+    for (const auto& entry : told.at("ledger").at("entries"))
       if (entry.at("name") == "axial momentum M3") return entry.at("verdict").get<std::string>();
     return std::string("no such entry");
   };
