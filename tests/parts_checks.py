@@ -94,14 +94,18 @@ class Checks(unittest.TestCase):
 
     def test_growth_at_rest_is_that_of_what_has_a_size(self):
         # At the upper equilibrium momenta are round-off of the angle; a small one is a momentum.
-        def upright(momentum):
+        def upright(momentum, steps=50):
             return told("pendulum", examples / "pendulum.toml", "--of", "final.q", "--wrt", "initial.q", "--check", "--set",
-                        "time.steps=50", "--set", "initial.position=[3.141592653589793]", "--set", f"initial.momentum=[{momentum}]")
+                        f"time.steps={steps}", "--set", "initial.position=[3.141592653589793]", "--set",
+                        f"initial.momentum=[{momentum}]")
         rest = upright(0)
         self.assertAlmostEqual(rest["growth"] / rest["derivatives"][0][0], 1, delta=1e-6)
         self.assertEqual((rest["contradicted"], rest["untold"]), ([], []))
         self.assertGreater(rest["digits_agreed"], 8)
         self.assertGreater(upright(1e-9)["growth"], 1e8)
+        # Where errors grow beyond all digits nothing is told.
+        for steps in (300, 500):
+            self.assertEqual(upright(0, steps)["contradicted"], [], steps)
         hanging = told("spheres", examples / "pendulum_chain.toml", "--of", "final.x3", "--set", "time.steps=50", "--set",
                        "initial={theta=[3.141592653589793,3.141592653589793,3.141592653589793],phi=[0,0,0],"
                        "angular_velocities=[[0,0,0],[0,0,0],[0,0,0]]}")
@@ -111,7 +115,7 @@ class Checks(unittest.TestCase):
         chain = ("spheres", examples / "pendulum_chain.toml", "--set", "time.step=0.05", "--set", "time.steps=40", "--of", "final.x3",
                  "--wrt", "parameters", "--check")
         for method in ("extrapolation", "munthe-kaas-54"):
-            for tolerance in (1e-2, 1e-4, 1e-6, 1e-10):
+            for tolerance in (1e-2, 1e-4, 1e-10):
                 found = told(*chain, "--set", f"time.method={method}", "--set", f"time.tolerance={tolerance}")
                 self.assertEqual(found["contradicted"], [], (method, tolerance))
                 self.assertEqual(found["untold"] == [], tolerance < 1e-9, (method, tolerance))
