@@ -157,7 +157,6 @@ class InteriorPoint {
   void update_barrier();
   void describe();
   void explain();
-  bool stands_strictly();
 
   Transcription& transcription_;
   ControlOptions options_;

@@ -1,7 +1,6 @@
 #include <lagroid/solvers/control/interior_point/failure.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_program.hpp>
-#include <lagroid/solvers/control/optimality/acting_curvature.hpp>
 #include <lagroid/solvers/control/stage_kkt.hpp>
 
 #include <fmt/format.h>
@@ -53,8 +52,7 @@ bool is_strict_minimum(const Transcription& transcription, const StageValues& va
   constexpr double least_slack = 1e-14;
   StageRows sigma = multipliers;
   for (std::size_t i = 0; i < sigma.numbers().size(); ++i)
-    sigma.numbers()[i] =
-        acting_curvature(multipliers.numbers()[i], std::max(-values.inequality.numbers()[i], least_slack));
+    sigma.numbers()[i] /= std::max(-values.inequality.numbers()[i], least_slack);
   StageKkt kkt(transcription);
   kkt.assemble(derivatives, sigma);
   return kkt.factor(0, StageRows(sizes.stages, sizes.equality)).negative == kkt.equalities();
