@@ -272,18 +272,24 @@ template <class Derived, int Dimension> class LieGroupoid {
   }
 
   /// How far the arrow ends from the object: the largest difference of coordinates, relative to the largest coordinate
-  /// of the arrow's end where that is above one. NaN where a coordinate is not finite.
+  /// of the arrow's end where that is above one; of several side by side, that of the worst. NaN where a coordinate is
+  /// not finite.
   template <class A, class Q> double end_gap(const A& g, const Q& q) const {
     const auto end = coordinates_of_object(self().target(g));
     const auto object = coordinates_of_object(q);
-    double gap = 0;
-    double size = 1;
-    for (Eigen::Index i = 0; i < end.size(); ++i) {
-      const double difference = std::abs(double(value_of(end(i)) - value_of(object(i))));
-      if (difference > gap || std::isnan(difference)) gap = difference;
-      size = std::max(size, std::abs(double(value_of(end(i)))));
+    double worst = 0;
+    for (int lane = 0; lane < (end.size() == 0 ? 0 : lanes_in(value_of(end(0)))); ++lane) {
+      double gap = 0;
+      double size = 1;
+      for (Eigen::Index i = 0; i < end.size(); ++i) {
+        const double there = in_lane(value_of(end(i)), lane);
+        const double difference = std::abs(there - in_lane(value_of(object(i)), lane));
+        if (difference > gap || std::isnan(difference)) gap = difference;
+        size = std::max(size, std::abs(there));
+      }
+      if (gap / size > worst || std::isnan(gap)) worst = gap / size;
     }
-    return gap / size;
+    return worst;
   }
   /// The `end_gap` that rounding may leave.
   static constexpr double largest_end_gap = 1e-9;

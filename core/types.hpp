@@ -48,6 +48,10 @@ constexpr double value_of(double x) { return x; }
 constexpr float value_of(float x) { return x; }
 constexpr long double value_of(long double x) { return x; }
 
+/// How many numbers a value has side by side, and one of them: more than one has Batch (core/scalars/batch.hpp).
+template <class T> constexpr int lanes_in(const T&) { return 1; }
+template <class T> constexpr double in_lane(const T& value, int) { return double(value); }
+
 /// a where the condition holds, b elsewhere: what formulas write in place of a branch, so that they serve scalars with
 /// lanes (core/scalars/batch.hpp) too, lane by lane. Both are evaluated.
 template <class S> LAGROID_INLINE constexpr S select(bool condition, const S& a, const std::type_identity_t<S>& b) {

@@ -123,6 +123,8 @@ template <int Width = widest_batch> class Batch {
 };
 
 template <int W> const Batch<W>& value_of(const Batch<W>& x) { return x; }
+template <int W> constexpr int lanes_in(const Batch<W>&) { return W; }
+template <int W> double in_lane(const Batch<W>& x, int lane) { return x[lane]; }
 
 template <class S> struct IsBatch : std::false_type {};
 template <int W> struct IsBatch<Batch<W>> : std::true_type {};
