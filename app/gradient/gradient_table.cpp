@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -98,11 +97,7 @@ AtPlace propagated(const GradientSubject& subject, const GradientColumns& column
                    const Observed& observed, std::size_t rows) {
   const auto motion = subject.begin(names_of(subject, columns), {});
   const Eigen::MatrixXd asked = directions_of(subject, columns, {}, motion->states());
-  GradientColumns whole = columns;
-  whole.start.resize(subject.start.size());
-  std::iota(whole.start.begin(), whole.start.end(), 0);
-  const Eigen::MatrixXd along =
-      directions_of(subject, whole, {}, motion->states()).leftCols(growth.along().rows()) * growth.along();
+  const Eigen::MatrixXd along = growth.directions(motion->states(), columns.parameters);
   AtPlace out;
   Eigen::MatrixXd errors;
   if (4 * rows >= std::size_t(asked.cols())) {

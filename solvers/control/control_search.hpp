@@ -179,20 +179,22 @@ ControlSearch<Sys> search_control(
     const ControlSolver<std::type_identity_t<Sys>>& solve =
         [](const auto&... with) { return solve_control(with...); }) {
   ControlSearch<Sys> found;
-  search_starts(found, options, keep_going, [&](int start, const ControlOptions& solver) {
-    return solve(task, control_guess(task, stages, start, options), solver);
-  });
   const std::vector<ControlPhase<Sys>> phases = phases_of(task, stages);
+  const auto search = [&](double longer, int before) {
+    search_starts(
+        found, options, [&](int start) { return keep_going(before + start); },
+        [&](int start, const ControlOptions& solver) {
+          ControlTrajectory<Sys> path = control_guess(task, stages, start, options);
+          for (std::size_t p = 0; p < phases.size(); ++p)
+            if (phases[p].duration_is_free) path.phases[p].step *= longer;
+          return solve(task, std::move(path), solver);
+        });
+  };
+  search(1, 0);
   const bool any_is_free =
       std::any_of(phases.begin(), phases.end(), [](const auto& phase) { return phase.duration_is_free; });
-  if (!found.minima.empty() || !any_is_free || found.outcomes.contains(ControlStatus::interrupted)) return found;
-  const auto of_these = [&](int start) { return keep_going(options.starts + start); };
-  search_starts(found, options, of_these, [&](int start, const ControlOptions& solver) {
-    ControlTrajectory<Sys> path = control_guess(task, stages, start, options);
-    for (std::size_t p = 0; p < phases.size(); ++p)
-      if (phases[p].duration_is_free) path.phases[p].step *= 4;
-    return solve(task, std::move(path), solver);
-  });
+  if (found.minima.empty() && any_is_free && !found.outcomes.contains(ControlStatus::interrupted))
+    search(4, options.starts);
   return found;
 }
 

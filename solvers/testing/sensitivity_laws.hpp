@@ -16,6 +16,7 @@
 
 #include <lagroid/core/algebroid.hpp>
 #include <lagroid/core/derivatives/directional.hpp>
+#include <lagroid/core/derivatives/extrapolated_difference.hpp>
 #include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
@@ -81,18 +82,7 @@ TrajectoryPoint<Sys> end_of_run(const Sys& system, const State<typename Sys::Gro
 /// f'(0), by central differences of so many widths, each half of the one before, extrapolated.
 inline Eigen::VectorXd extrapolated_difference(const std::function<Eigen::VectorXd(double)>& f, double width,
                                                int widths = 3) {
-  std::vector<Eigen::VectorXd> row;
-  for (int level = 0; level < widths; ++level, width /= 2) {
-    Eigen::VectorXd next = (f(width) - f(-width)) / (2 * width);
-    double power = 4;
-    for (Eigen::VectorXd& each : row) {
-      const Eigen::VectorXd better = next + (next - each) / (power - 1);
-      each = std::exchange(next, better);
-      power *= 4;
-    }
-    row.push_back(next);
-  }
-  return row.back();
+  return lagroid::extrapolated_difference(f, width, widths)->value;
 }
 
 /// (displacement of the configuration, change of the momentum) between two ends.

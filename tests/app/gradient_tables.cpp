@@ -1,4 +1,6 @@
 // Tables of derivatives of a system that reads one of its numbers as a plain one: that is left out, and told.
+#include "gradient/subject_of_run.hpp"
+
 #include <gradient/gradient_table.hpp>
 #include <gradient/uncertainty.hpp>
 
@@ -30,28 +32,10 @@ struct Bob : MechanicalSystem<Bob, 1> {
 };
 
 GradientSubject subject_of_bob() {
-  GradientSubject out;
-  out.system = "bob";
-  out.steps = 20;
-  out.observed = out.start = {{"position", "q"}, {"momentum", "p"}};
-  out.sizes = {0.3, 0.1};
   Bob bob;
   bob.h = 0.1;
-  name_parameters(bob, out);
-  out.begin = [bob](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
-    Bob other = bob;
-    State<Pair<1>> start{Vector<double, 1>(0.3), Vector<double, 1>(0.1)};
-    nudge_parameters(other, nudges);
-    for (const Nudge& nudge : nudges)
-      if (nudge.parameter.empty()) (nudge.index == 0 ? start.object(0) : start.momentum(0)) += nudge.by;
-    return std::make_unique<LinearisedMotionOf<Bob>>(other, detail::newton_integrator<Bob>(other, start, {}),
-                                                     parameters, [](const ObservedNode<Bob>& node) {
-                                                       VariedVector both(2);
-                                                       both << node.object(0), node.momentum(0);
-                                                       return both;
-                                                     });
-  };
-  return out;
+  return subject_of_run<1>("bob", bob, {Vector<double, 1>(0.3), Vector<double, 1>(0.1)}, 20,
+                           {{"position", "q"}, {"momentum", "p"}});
 }
 
 /// What is said of words that are refused.

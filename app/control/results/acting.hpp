@@ -1,8 +1,8 @@
 #pragma once
 /// At which stages inequalities act, and where bounds are reached: what bands of pictures, and lines of reports, show.
 ///
-///     for (const StageRange& each : where_bounds_are_reached(found)) shade(found.times[each.first],
-///     found.times[each.end]);
+///     for (const StageRange& each : where_bounds_are_reached(found))
+///       shade(found.times[each.first], found.times[each.end]);
 ///
 /// An inequality acts where its multiplier is above a millionth of the largest, and a control is at a bound to a
 /// millionth of its size. Nothing throws.

@@ -1,5 +1,7 @@
 #include "differences.hpp"
 
+#include <lagroid/core/derivatives/extrapolated_difference.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,29 +17,6 @@ namespace lagroid::app {
 namespace {
 
 using ValuesAt = std::function<std::optional<Eigen::VectorXd>(double)>;
-
-/// By central differences of runs, three widths, extrapolated, and by how much the last extrapolation changed it.
-struct Difference {
-  Eigen::ArrayXd value;
-  Eigen::ArrayXd correction;
-};
-/// None where one of the runs has no values.
-std::optional<Difference> difference(const ValuesAt& values, double width) {
-  std::vector<Eigen::VectorXd> row;
-  for (int level = 0; level < 3; ++level, width /= 2) {
-    const auto above = values(width), below = values(-width);
-    if (!above || !below) return std::nullopt;
-    Eigen::VectorXd next = (*above - *below) / (2 * width);
-    double power = 4;
-    for (Eigen::VectorXd& each : row) {
-      const Eigen::VectorXd better = next + (next - each) / (power - 1);
-      each = std::exchange(next, better);
-      power *= 4;
-    }
-    row.push_back(next);
-  }
-  return Difference{row[2].array(), (row[2] - row[1]).array().abs()};
-}
 
 /// The unit of what a row shows.
 std::string unit_of_row(const GradientSubject& subject, const GradientTable& table, std::size_t row) {
@@ -105,11 +84,12 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
   out.agrees.setConstant(count, false);
   out.told_otherwise.setConstant(count, false);
   for (const double width : widths_of(exact, rows, size)) {
-    const auto found = difference(values, width);
+    const auto found = extrapolated_difference(values, width);
     if (!found) continue;
-    const Eigen::ArrayXd off = (found->value - exact).abs() * size;
-    const Eigen::ArrayXd error = 10 * (found->correction + rows.noise / width) * size;
-    const Eigen::ArrayXd most = rows.most.max(found->value.abs() * size).max(1e-3 * rows.scales);
+    const Eigen::ArrayXd value = found->value;
+    const Eigen::ArrayXd off = (value - exact).abs() * size;
+    const Eigen::ArrayXd error = 10 * (found->correction.array().abs() + rows.noise / width) * size;
+    const Eigen::ArrayXd most = rows.most.max(value.abs() * size).max(1e-3 * rows.scales);
     // Of runs that end farther apart than rows are large, differences are no derivatives.
     const auto is_near = rows.scales <= 0 || exact.abs() * width <= rows.scales;
     const auto is_known = is_near && error <= known * most;
@@ -117,12 +97,12 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
     out.agrees = out.agrees || (is_known && off <= error) || (tells && off <= agreed * most);
     out.told_otherwise = out.told_otherwise || (is_known && off > error);
     if (!std::exchange(out.at_all, true)) {
-      out.difference = found->value;
+      out.difference = value;
       out.off = off;
       out.error = error;
     } else {
       const Eigen::Array<bool, Eigen::Dynamic, 1> nearer = off < out.off;
-      out.difference = nearer.select(found->value, out.difference).eval();
+      out.difference = nearer.select(value, out.difference).eval();
       out.error = out.error.min(error).eval();
       out.off = nearer.select(off, out.off).eval();
     }

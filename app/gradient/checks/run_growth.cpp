@@ -97,6 +97,12 @@ RunGrowth::RunGrowth(const GradientSubject& subject, SizesOfUnits sizes)
   at_start_ = at_start * along_;
 }
 
+Eigen::MatrixXd RunGrowth::directions(Eigen::Index states, const std::vector<int>& parameters) const {
+  GradientColumns whole = whole_start(*subject_);
+  whole.parameters = parameters;
+  return directions_of(*subject_, whole, {}, states).leftCols(along_.rows()) * along_;
+}
+
 double RunGrowth::largest(const Eigen::MatrixXd& observed_along, const Units& left_out) const {
   double out = 0;
   for (Eigen::Index i = 0; i < observed_along.rows(); ++i) {
@@ -110,7 +116,7 @@ double RunGrowth::largest(const Eigen::MatrixXd& observed_along, const Units& le
 
 RunGrowth::Units RunGrowth::units_at_rest() const {
   const auto motion = subject_->begin({}, {});
-  const Eigen::MatrixXd along = directions_of(*subject_, whole_start(*subject_), {}, motion->states()) * along_;
+  const Eigen::MatrixXd along = directions(motion->states());
   if (subject_->begin_along) subject_->begin_along(*motion, along);
   const Eigen::VectorXd start = motion->observe().values;
   const Propagated first = propagate_forward(*motion, 1, along);

@@ -43,6 +43,8 @@ class RunGrowth {
   const SizesOfUnits& sizes() const { return sizes_; }
   /// Directions x, of the numbers of the start.
   const Eigen::MatrixXd& along() const { return along_; }
+  /// The same of the states of a motion that begins with these parameters varying, and of these below, which stay.
+  Eigen::MatrixXd directions(Eigen::Index states, const std::vector<int>& parameters = {}) const;
   /// Of what is observed, differentiated along these.
   double factor(const Eigen::MatrixXd& observed_along) const;
 

@@ -9,10 +9,8 @@
 /// Where steps keep the groupoid, v is along it (GroupoidChart); where they drift off it, the numbers y beside (v, mu)
 /// are across it (CoordinateChart). Requires small displacements; those of CoordinateChart are linear. Nothing throws.
 
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/quantity.hpp>
-
-#include <Eigen/LU>
-#include <Eigen/QR>
 
 namespace lagroid {
 
@@ -64,9 +62,9 @@ template <DiscreteSystem Sys> class CoordinateChart {
     Matrix<double, coordinates, n> along;
     for (int i = 0; i < n; ++i)
       along.col(i) = groupoid_.left_invariant(point.configuration, Vector<double, n>(Vector<double, n>::Unit(i)));
-    const Matrix<double, coordinates, coordinates> basis = along.householderQr().householderQ();
-    frame_ << along, basis.template rightCols<coordinates - n>();
-    inverse_ = frame_.inverse();
+    frame_.template leftCols<n>() = along;
+    frame_.template rightCols<coordinates - n>() = orthogonal_factor(along).template rightCols<coordinates - n>();
+    inverse_ = inverse_of(frame_);
   }
 
   template <class S> NodeOver<G, S> displaced(const Vector<S, states>& x) const {

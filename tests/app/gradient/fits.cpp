@@ -1,5 +1,7 @@
 // Fits whose answers are known: starts by velocities, deviations under Huber's loss and without anything left over, and
 // what no scene allows.
+#include "subject_of_run.hpp"
+
 #include <families/family.hpp>
 #include <gradient/fit/fit.hpp>
 #include <gradient/system_gradients.hpp>
@@ -131,32 +133,15 @@ struct Bob : MechanicalSystem<Bob, 1> {
   static auto parameters() { return std::tuple(parameter("stiffness", &Bob::stiffness, "N/m", "of it", positive)); }
 };
 GradientSubject bob(double stiffness) {
-  GradientSubject out;
-  out.system = "bob";
-  out.steps = 40;
-  out.observed = out.start = {{"position", "q"}, {"momentum", "p"}};
-  out.sizes = {1, 0.1};
   Bob bob;
   bob.h = 0.1;
   bob.stiffness = stiffness;
-  name_parameters(bob, out);
+  GradientSubject out = subject_of_run<1>("bob", bob, {Vector<double, 1>(1), Vector<double, 1>(0.1)}, 40,
+                                          {{"position", "q"}, {"momentum", "p"}});
   out.refusal = [bob](const std::vector<Nudge>& nudges) {
     Bob other = bob;
     nudge_parameters(other, nudges);
     return set_parameters(other, parameter_values(other));
-  };
-  out.begin = [bob](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
-    Bob other = bob;
-    State<Pair<1>> start{Vector<double, 1>(1), Vector<double, 1>(0.1)};
-    nudge_parameters(other, nudges);
-    for (const Nudge& nudge : nudges)
-      if (nudge.parameter.empty()) (nudge.index == 0 ? start.object(0) : start.momentum(0)) += nudge.by;
-    return std::make_unique<LinearisedMotionOf<Bob>>(other, detail::newton_integrator<Bob>(other, start, {}),
-                                                     parameters, [](const ObservedNode<Bob>& node) {
-                                                       VariedVector both(2);
-                                                       both << node.object(0), node.momentum(0);
-                                                       return both;
-                                                     });
   };
   return out;
 }

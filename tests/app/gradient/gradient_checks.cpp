@@ -1,5 +1,7 @@
 // What tables of derivatives say of themselves: what differences contradict and cannot tell, the growth of errors,
 // numbers that are none; and directions, of which scenes give numbers of any length.
+#include "subject_of_run.hpp"
+
 #include <gradient/columns/computed_columns.hpp>
 #include <gradient/columns/given_directions.hpp>
 #include <gradient/gradient_table.hpp>
@@ -40,27 +42,8 @@ struct Valley : MechanicalSystem<Valley, 2> {
 GradientSubject subject_of(const Valley& given, long steps = 40) {
   Valley valley = given;
   valley.h = 0.1;
-  GradientSubject out;
-  out.system = "valley";
-  out.steps = steps;
-  out.observed = out.start = {{"position", "x"}, {"position", "y"}, {"momentum", "px"}, {"momentum", "py"}};
-  out.sizes = {0.5, 0.3, 0.1, -0.2};
-  name_parameters(valley, out);
-  out.begin = [valley](const Names& parameters, const std::vector<Nudge>& nudges) {
-    Valley other = valley;
-    State<Pair<2>> start{Vector<double, 2>(0.5, 0.3), Vector<double, 2>(0.1, -0.2)};
-    nudge_parameters(other, nudges);
-    for (const Nudge& nudge : nudges)
-      if (nudge.parameter.empty())
-        (nudge.index < 2 ? start.object(nudge.index) : start.momentum(nudge.index - 2)) += nudge.by;
-    return std::make_unique<LinearisedMotionOf<Valley>>(other, detail::newton_integrator<Valley>(other, start, {}),
-                                                        parameters, [](const ObservedNode<Valley>& node) {
-                                                          VariedVector both(4);
-                                                          both << node.object, node.momentum;
-                                                          return both;
-                                                        });
-  };
-  return out;
+  return subject_of_run<2>("valley", valley, {{0.5, 0.3}, {0.1, -0.2}}, steps,
+                           {{"position", "x"}, {"position", "y"}, {"momentum", "px"}, {"momentum", "py"}});
 }
 
 /// Runs beside this one start too far away by so much: every derivative is wrong.
