@@ -146,6 +146,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     if (read.loop) require_loop(scene);
     require_end(scene, posed, Ends::start);
     require_end(scene, posed, Ends::end);
+    require_bounded_time(scene, posed);
     return posed;
   }
   /// A loop begins anew at each state, from where an end with another momentum is out of reach.
@@ -187,6 +188,25 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     table.fail("free", fmt::format("the motion can wait at its {} at no cost, so that no duration is the best: {}{}",
                                    key, can_cost ? "let time be the cost (parameters.cost = \"time\"), or " : "",
                                    in_phases ? "give the duration a range" : "leave out free"));
+  }
+  /// Refuses a free duration that tends to zero.
+  static void require_bounded_time(const Section& scene, const Posed& posed) {
+    const ControlTask<Sys>& task = posed.task;
+    const std::vector<ControlPhase<Sys>> phases = phases_of(task, posed.scene.stages);
+    const auto fail = [&](std::size_t phase, const char* why) {
+      (posed.scene.phases.empty() ? scene.section("horizon", "") : posed.scene.phases[phase].table).fail("free", why);
+    };
+    for (std::size_t i = 0; i < phases.size(); ++i)
+      if (nothing_bounds_time(phases[i], task.boundary))
+        fail(i,
+             "no control has a bound or a cost, so that the shorter the duration the cheaper, to none at all: give "
+             "bounds, or leave out free");
+    const bool is_given = !task.start_condition && !task.end_condition;
+    if (phases.size() == 1 && phases[0].duration_is_free && !(phases[0].shortest > 0) && is_given &&
+        task.system.groupoid.tau_inverse(task.boundary).isZero(1e-12))
+      fail(0,
+           "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] a range or a "
+           "state on the way");
   }
   template <class Bounded> static void set_bounds(Bounded& of, const ControlBounds& bounds) {
     for (int i = 0; i < int(bounds.size()); ++i) std::tie(of.lower(i), of.upper(i)) = bounds[std::size_t(i)];

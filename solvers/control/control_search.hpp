@@ -170,8 +170,7 @@ using ControlSolver =
     std::function<ControlSolution<Sys>(const ControlTask<Sys>&, ControlTrajectory<Sys>, const ControlOptions&)>;
 
 /// Of a task in phases, their stages count and not `stages`. Before each start and in its every iteration
-/// `keep_going(start)` decides whether it goes on. Where no start converges and durations are free, the same begin
-/// again with four times these: of a motion that must first go away from its end too short a guess shrinks to nothing.
+/// `keep_going(start)` decides whether it goes on.
 template <class Sys>
 ControlSearch<Sys> search_control(
     const ControlTask<Sys>& task, long stages, const ControlSearchOptions& options = {},
@@ -180,21 +179,14 @@ ControlSearch<Sys> search_control(
         [](const auto&... with) { return solve_control(with...); }) {
   ControlSearch<Sys> found;
   const std::vector<ControlPhase<Sys>> phases = phases_of(task, stages);
-  const auto search = [&](double longer, int before) {
-    search_starts(
-        found, options, [&](int start) { return keep_going(before + start); },
-        [&](int start, const ControlOptions& solver) {
-          ControlTrajectory<Sys> path = control_guess(task, stages, start, options);
-          for (std::size_t p = 0; p < phases.size(); ++p)
-            if (phases[p].duration_is_free) path.phases[p].step *= longer;
-          return solve(task, std::move(path), solver);
-        });
-  };
-  search(1, 0);
   const bool any_is_free =
       std::any_of(phases.begin(), phases.end(), [](const auto& phase) { return phase.duration_is_free; });
-  if (found.minima.empty() && any_is_free && !found.outcomes.contains(ControlStatus::interrupted))
-    search(4, options.starts);
+  search_starts(found, options, any_is_free, keep_going, [&](int start, double longer, const ControlOptions& solver) {
+    ControlTrajectory<Sys> path = control_guess(task, stages, start, options);
+    for (std::size_t p = 0; p < phases.size(); ++p)
+      if (phases[p].duration_is_free) path.phases[p].step *= longer;
+    return solve(task, std::move(path), solver);
+  });
   return found;
 }
 

@@ -91,7 +91,7 @@ struct ControlReport {
   double stationarity = 0;                   ///< largest component of the Lagrangian's gradient
   double violation = 0;                      ///< largest of |phi| and of gamma's positive part
   double complementarity = 0;                ///< largest |z_i gamma_i|
-  bool is_strict_minimum = false;            ///< the matrix has the inertia of a strict local minimum, without a shift
+  bool is_strict_minimum = false;            ///< a local one, by the inertia of its matrix (strict_minimum.hpp)
   std::vector<ConstraintViolation> worst;    ///< of a trajectory that is infeasible, the largest five
   std::vector<RepeatedConstraint> repeated;  ///< converged or not: what could be left out (repeated_constraints.hpp)
   std::string message;                       ///< where it is not converged: what to do

@@ -1,15 +1,21 @@
 #pragma once
 /// One start after another of an optimal control problem, until there are enough: what each found is sorted in.
 ///
-///     search_starts(found, options, [](int) { return true; }, [&](int start, const ControlOptions& solver) {
-///       return solve_control(task, control_guess(task, stages, start, options), solver);
-///     });
+///     search_starts(found, options, durations_are_free, [](int) { return true; },
+///                   [&](int start, double longer, const ControlOptions& solver) {
+///                     ControlTrajectory<DubinsCar> path = control_guess(task, stages, start, options);
+///                     path.phases.front().step *= longer;
+///                     return solve_control(task, path, solver);
+///                   });
 ///
 /// `found` has `minima`, `best_failure`, `outcomes` and `iterations` (ControlSearch), `options` has `starts`,
 /// `patience` and the `solver`'s (ControlSearchOptions). A start is given up after `patience` times the iterations of
 /// the slowest that has converged, at least a hundred; zero: none is. `keep_going(start)` is asked before each start
 /// but the first and in every iteration; where it says no, the search ends with what it has. Solutions of the same cost
 /// to 1e-7 are the same.
+///
+/// Where no start converges and durations are free, the same begin again with four times these (`longer`): of a motion
+/// that must first go away from its end too short a guess shrinks to nothing.
 
 #include <lagroid/solvers/control/interior_point.hpp>
 
@@ -20,9 +26,11 @@
 
 namespace lagroid {
 
+namespace detail {
+
 template <class Found, class Options, class Solve>
-void search_starts(Found& found, const Options& options, const std::function<bool(int start)>& keep_going,
-                   const Solve& solve) {
+void search_these_starts(Found& found, const Options& options, const std::function<bool(int start)>& keep_going,
+                         const Solve& solve) {
   constexpr int least = 100;
   int slowest = 0;
   for (int i = 0; i < options.starts && (i == 0 || keep_going(i)); ++i) {
@@ -49,6 +57,21 @@ void search_starts(Found& found, const Options& options, const std::function<boo
   }
   std::sort(found.minima.begin(), found.minima.end(),
             [](const auto& a, const auto& b) { return a.report.cost < b.report.cost; });
+}
+
+}  // namespace detail
+
+template <class Found, class Options, class Solve>
+void search_starts(Found& found, const Options& options, bool durations_are_free,
+                   const std::function<bool(int start)>& keep_going, const Solve& solve) {
+  const auto search = [&](double longer, int before) {
+    detail::search_these_starts(
+        found, options, [&](int start) { return keep_going(before + start); },
+        [&](int start, const ControlOptions& solver) { return solve(start, longer, solver); });
+  };
+  search(1, 0);
+  if (found.minima.empty() && durations_are_free && !found.outcomes.contains(ControlStatus::interrupted))
+    search(4, options.starts);
 }
 
 }  // namespace lagroid

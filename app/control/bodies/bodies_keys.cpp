@@ -183,6 +183,7 @@ class Reader {
     ++constraints_;
     const std::string kind = read_key(table, kind_key(limit_kinds()));
     const NamedBody& body = bodies_.named(table, body_key.name, read_key(table, body_key));
+    if (table.has(name_key.name)) require_new_name(table);
     if (kind == "cone") return read_cone(table, body);
     if (kind == "speed") return read_speed(table, body);
     read_keep_out(table, body,
@@ -291,6 +292,11 @@ class Reader {
     if (!is_new) table.fail("", fmt::format("says what constraint.{} says: leave one of them out", before->second));
   }
 
+  void require_new_name(const Section& table) {
+    const auto [before, is_new] = names_.try_emplace(read_key_or(table, name_key, ""), constraints_);
+    if (!is_new) table.fail(name_key.name, fmt::format("is that of constraint.{}: give another", before->second));
+  }
+
   /// A largest speed, which the start keeps to.
   static double largest(const Section& table, const KeyOf<Number>& key, const NamedBody& body, double at_start,
                         std::string_view unit) {
@@ -325,8 +331,9 @@ class Reader {
   BodiesControl& out_;
   std::vector<PointOf> points_;
   std::vector<EndOf> ends_;
-  int constraints_ = -1;             // the number of the one that is read
-  std::map<std::string, int> said_;  // what they say, and which says it first
+  int constraints_ = -1;              // the number of the one that is read
+  std::map<std::string, int> said_;   // what they say, and which says it first
+  std::map<std::string, int> names_;  // that scenes give them
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 /// What a control problem says of one state by itself: which inequality does not hold there, and whether the motion can
-/// wait there at no cost.
+/// wait there at no cost; and whether anything keeps its duration from zero.
 ///
 ///     if (const auto i = broken_at(system, node)) refuse(limits[*i]);
 ///     if (phase.duration_is_free && can_wait(phase, node)) refuse("no duration is the best");
@@ -64,6 +64,29 @@ template <class Sys> bool can_wait(const ControlPhase<Sys>& phase, const NodeOf<
     if (phase.inequalities_hold)
       for (const double gamma : system.inequality(rest, u, h))
         if (!(gamma <= 0)) return false;
+  return true;
+}
+
+/// Whether a free duration tends to zero, the controls being as large as they like: none of them has a bound or costs
+/// anything along the arrow, no inequality holds, and equations are linear in them, so that none of these is a bound.
+template <class Sys>
+bool nothing_bounds_time(const ControlPhase<Sys>& phase, const ArrowOf<typename Sys::GroupoidType>& along) {
+  using Controls = Vector<double, Sys::controls>;
+  constexpr double rounding = 1e-9;
+  if (!phase.duration_is_free || phase.shortest > 0 || (Sys::inequalities > 0 && phase.inequalities_hold)) return false;
+  const double h = phase.duration / double(phase.stages);
+  const auto& system = phase.system;
+  const Controls none = Controls::Zero();
+  for (int i = 0; i < Sys::controls; ++i) {
+    const Controls one = Controls::Unit(i);
+    if (std::isfinite(phase.lower(i)) || std::isfinite(phase.upper(i))) return false;
+    if (system.cost(along, one, h) != system.cost(along, none, h)) return false;
+    const auto at = system.constraint(along, none, h);
+    const auto by_one = system.constraint(along, one, h);
+    const auto by_two = system.constraint(along, Controls(2 * one), h);
+    for (int row = 0; row < int(at.size()); ++row)
+      if (!(std::abs(by_two(row) - 2 * by_one(row) + at(row)) <= rounding * (1 + std::abs(by_one(row))))) return false;
+  }
   return true;
 }
 

@@ -1,4 +1,5 @@
 #include <lagroid/solvers/control/interior_point.hpp>
+#include <lagroid/solvers/control/optimality/strict_minimum.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -297,7 +298,8 @@ void InteriorPoint::iterate(int most_iterations) {
 ControlReport InteriorPoint::solve() {
   begin();
   iterate(options_.max_iterations);
-  if (report_.converged()) report_.is_strict_minimum = direction() && shift_ == 0;
+  if (report_.converged())
+    report_.is_strict_minimum = is_strict_minimum(kkt_, derivatives_, multipliers_, slacks_, sigma_, dual_);
   describe();
   explain();
   return report_;

@@ -1,7 +1,7 @@
 #include <lagroid/solvers/control/interior_point/failure.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_program.hpp>
-#include <lagroid/solvers/control/stage_kkt.hpp>
+#include <lagroid/solvers/control/optimality/strict_minimum.hpp>
 
 #include <fmt/format.h>
 #include <IpIpoptApplication.hpp>
@@ -45,17 +45,17 @@ std::string message_of(const ControlReport& report, Ipopt::ApplicationReturnStat
   return "IPOPT: " + report.message;
 }
 
-/// Whether the KKT matrix has the inertia of a strict minimum, z_i / -gamma_i taken as it stands.
+/// Of slacks as they stand, those of an interior point or smaller.
 bool is_strict_minimum(const Transcription& transcription, const StageValues& values,
                        const StageDerivatives& derivatives, const StageRows& multipliers) {
   const TranscriptionSizes& sizes = transcription.sizes();
   constexpr double least_slack = 1e-14;
-  StageRows sigma = multipliers;
-  for (std::size_t i = 0; i < sigma.numbers().size(); ++i)
-    sigma.numbers()[i] /= std::max(-values.inequality.numbers()[i], least_slack);
+  StageRows slacks = values.inequality;
+  for (double& s : slacks.numbers()) s = std::max(-s, least_slack);
   StageKkt kkt(transcription);
-  kkt.assemble(derivatives, sigma);
-  return kkt.factor(0, StageRows(sizes.stages, sizes.equality)).negative == kkt.equalities();
+  StageRows sigma(sizes.stages, sizes.inequality);
+  StageRows dual(sizes.stages, sizes.equality);
+  return lagroid::is_strict_minimum(kkt, derivatives, multipliers, slacks, sigma, dual);
 }
 
 }  // namespace

@@ -119,9 +119,15 @@ SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const Control
 SceneSearch search_scene(ControlledScene& scene, const SceneSearchOptions& options,
                          const std::function<bool(int)>& keep_going, const SceneSolver& solve) {
   SceneSearch found;
-  search_starts(found, options, keep_going, [&](int start, const ControlOptions& solver) {
-    return solve(scene, scene_guess(scene, start, options), solver);
-  });
+  search_starts(found, options, scene.task().duration_is_free, keep_going,
+                [&](int start, double longer, const ControlOptions& solver) {
+                  ScenePath path = scene_guess(scene, start, options);
+                  if (longer != 1) {
+                    path.step *= longer;
+                    settle(scene, path);
+                  }
+                  return solve(scene, std::move(path), solver);
+                });
   return found;
 }
 

@@ -379,6 +379,22 @@ TEST_F(Control, ADurationThatCostsNothingIsRefused) {
   EXPECT_NEAR(nlohmann::json::parse(drift.out).at("duration").get<double>(), 3, 1e-3);
 }
 
+TEST_F(Control, ATimeThatNothingBoundsIsRefused) {
+  const std::string scene =
+      "control = 'double_integrator'\n[parameters]\ncost = 'time'\n[boundary]\nstart = [0, 1]\nend = [0, 0]\n"
+      "[horizon]\nduration = 3\nfree = true\nstages = 20\n";
+  expect_refused("control " + write(scene).string(), "horizon.free: no control has a bound or a cost");
+  const std::string bounded = "control " + write(scene + "[bounds]\nu = [-1, 1]\n").string();
+  EXPECT_EQ(run(bounded).code, 0);
+  expect_refused(bounded + " --set 'boundary.end=[0,1]'", "horizon.free: the end is the start");
+}
+
+TEST_F(Control, WhereEveryMotionCostsTheSameNoneIsAStrictMinimum) {
+  const Outcome r = run(scene("fastest_stop") + " --json --set horizon.free=false --set horizon.duration=4");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_FALSE(nlohmann::json::parse(r.out).at("strict_minimum").get<bool>());
+}
+
 TEST_F(Control, EndsThatBreakAnInequalityAreRefused) {
   const auto refused = [&](const std::string& name, const std::string& set, const std::string& words) {
     const Outcome r = expect_refused(scene(name) + " --set '" + set + "'", words);

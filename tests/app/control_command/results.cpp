@@ -4,6 +4,7 @@
 #include <reading/csv_table.hpp>
 #include <reading/data_set.hpp>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <H5Cpp.h>
@@ -259,6 +260,11 @@ TEST_F(ControlResults, WhatRepeatsIsToldInASentence) {
                                "\n[[constraint]]\nkind = 'disk'\nbody = 'fore'\nat = [0.5, 0, 0]\n"
                                "centre = [1, 1, 0]\nradius = 0.3\n");
   expect_refused("control " + twice.string(), "constraint.4: says what constraint.3 says: leave one of them out");
+  const auto slow = [](const char* speed) {
+    return fmt::format("\n[[constraint]]\nname = 'slow'\nkind = 'speed'\nbody = 'fore'\n{}\n", speed);
+  };
+  const fs::path one_name = write(text_of("arm_of_bodies") + slow("speed = 9") + slow("angular_speed = 9"));
+  expect_refused("control " + one_name.string(), "constraint.5.name: is that of constraint.4: give another");
 }
 
 TEST_F(ControlResults, BoundsMayBeOnOneSide) {
