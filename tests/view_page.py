@@ -12,10 +12,12 @@ import time
 import unittest
 
 from selenium import webdriver
+from selenium.webdriver.common.keys import Keys
 
 LAGROID, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
 
-# One scene for every shape and every way in which time goes on; an abandoned run; a long one, of which rows are left out.
+# One scene for every shape and every way in which time goes on; an abandoned run; a long one, of which rows are left
+# out.
 SCENES = {
     "plate_ball_initial_value": [],
     "rolling_ball": [],
@@ -36,6 +38,12 @@ SCENES = {
     "tops": [],
     "pendulum_chain": [],
 }
+
+# Of each panel what its legend says, as far as it is seen, and the names of its curves.
+NAMED = """const run = JSON.parse(document.getElementById("run").textContent);
+    const figures = [...document.querySelectorAll("figure")];
+    const said = (figure) => [...figure.querySelectorAll(".legend li")].map((item) => item.innerText.trim());
+    return run.panels.map(({ curves }, i) => [said(figures[i]), curves]);"""
 
 
 def lagroid(*arguments):
@@ -68,6 +76,25 @@ def colours(png):
     )
 
 
+def severe(driver):
+    return [entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
+
+
+def browser(*flags):
+    options = webdriver.ChromeOptions()
+    for flag in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "window-size=1200,900", *flags):
+        options.add_argument(f"--{flag}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(options=options)
+
+
+def is_tint(pixel, colour):
+    """Whether it is that colour, given as #rrggbb, mixed with white."""
+    parts = [int(colour[at : at + 2], 16) for at in (1, 3, 5)]
+    shares = [(255 - a) / (255 - b) for a, b in zip(pixel, parts)]
+    return max(shares) - min(shares) < 0.05 and 0.05 < min(shares) < 0.5
+
+
 def eventually(holds, seconds=30):
     """Whether it holds within that time: a busy machine draws few frames a second."""
     end = time.monotonic() + seconds
@@ -81,8 +108,16 @@ def eventually(holds, seconds=30):
 class Page(unittest.TestCase):
     def open(self, page):
         DRIVER.get(page.as_uri())
-        errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
-        self.assertEqual(errors, [])
+        self.assertEqual(severe(DRIVER), [])
+
+    def control(self, folder, scene, *settings):
+        """The page of what an optimal control scene of the examples comes to."""
+        out = pathlib.Path(folder) / "found"
+        words = [word for setting in ("solver.starts=2", *settings) for word in ("--set", setting)]
+        found = lagroid("control", str(EXAMPLES / "control" / f"{scene}.toml"), *words, "--out", str(out))
+        self.assertEqual(found.returncode, 0, found.stderr)
+        self.assertEqual(lagroid("view", str(out)).returncode, 0)
+        return out / "view.html"
 
     def test_every_picture(self):
         for scene, overrides in SCENES.items():
@@ -99,42 +134,39 @@ class Page(unittest.TestCase):
                 )
                 for labels in axes:
                     self.assertEqual(len(set(labels)), len(labels), f"labels repeat: {labels}")
+                for said, curves in DRIVER.execute_script(NAMED):
+                    self.assertEqual(said[: len(curves)], curves)
                 stage = DRIVER.find_element("id", "bodies")
                 self.assertGreater(colours(stage.screenshot_as_base64), 20, "the stage is blank")
                 before = DRIVER.execute_script("return lagroid.player.t")
                 self.assertTrue(
                     eventually(lambda: DRIVER.execute_script("return lagroid.player.t") != before), "nothing moves"
                 )
-                errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
-                self.assertEqual(errors, [])
+                self.assertEqual(severe(DRIVER), [])
 
     def test_what_control_finds(self):
         """Motion where there is a picture, controls in steps, and bands behind the curves where inequalities act."""
         scenes = {"arm_of_bodies": 20, "keep_out": 30, "rolled_ball": 30, "through_a_gate": 0, "fastest_stop": 30}
         for scene, stages in scenes.items():
             with self.subTest(scene), tempfile.TemporaryDirectory() as folder:
-                out = pathlib.Path(folder) / "found"
-                fewer = ["--set", f"horizon.stages={stages}"] if stages else []
-                arguments = ["--set", "solver.starts=2", *fewer, "--out", str(out)]
-                found = lagroid("control", str(EXAMPLES / "control" / f"{scene}.toml"), *arguments)
-                self.assertEqual(found.returncode, 0, found.stderr)
-                self.assertEqual(lagroid("view", str(out)).returncode, 0)
-                self.open(out / "view.html")
+                self.open(self.control(folder, scene, *([f"horizon.stages={stages}"] if stages else [])))
                 has_picture = DRIVER.execute_script("return lagroid.stage !== null")
                 self.assertEqual(has_picture, scene != "fastest_stop")
                 nothing = DRIVER.find_element("id", "nothing")
                 self.assertEqual("no picture in space" in nothing.text, not has_picture)
+                if scene == "fastest_stop":
+                    self.assertEqual([said[0] for said, _ in DRIVER.execute_script(NAMED)][:2], ["x, m", "v, m/s"])
                 if has_picture:
                     stage = DRIVER.find_element("id", "bodies")
                     self.assertGreater(colours(stage.screenshot_as_base64), 20, "the stage is blank")
                 self.assertGreater(min(DRIVER.execute_script("return lagroid.plots.points()")), 10)
-                # A pixel of a band has its colour, at the top where no curve is.
+                # A pixel of a band has its colour, at the top where no curve is, and beside the lines of the grid.
                 shaded = """const run = JSON.parse(document.getElementById("run").textContent);
                     return run.panels.flatMap(({ bands }, i) => bands.map(([from, to]) => {
                       const { chart } = lagroid.plots.plots[i];
                       chart.draw();
                       const scale = chart.currentDevicePixelRatio;
-                      const x = chart.scales.x.getPixelForValue((from + to) / 2);
+                      const x = chart.scales.x.getPixelForValue(from + 0.37 * (to - from));
                       const pixel = chart.ctx.getImageData(x * scale, (chart.chartArea.top + 2) * scale, 1, 1).data;
                       return [...pixel].slice(0, 3);
                     }));"""
@@ -148,8 +180,96 @@ class Page(unittest.TestCase):
                 )
                 self.assertEqual(steps[0], steps[1])
                 self.assertIsNone(steps[2])
-                errors = [entry for entry in DRIVER.get_log("browser") if entry["level"] == "SEVERE"]
-                self.assertEqual(errors, [])
+                self.assertEqual(severe(DRIVER), [])
+
+    def test_bands_are_of_their_curves(self):
+        """Where a control is at its bound is shaded in its colour; where two are, one above the other."""
+        with tempfile.TemporaryDirectory() as folder:
+            self.open(self.control(folder, "hovercraft"))
+            figure = """const labels = lagroid.plots.plots.map(({ chart }) => chart.data.datasets[0].label);
+                const i = labels.indexOf("force");
+                const { chart } = lagroid.plots.plots[i];"""
+            palette, legend = DRIVER.execute_script(
+                figure
+                + """const items = [...document.querySelectorAll("figure")[i].querySelectorAll(".legend li")];
+                const bands = items.filter((item) => item.querySelector(".band"));
+                const shade = (item) => getComputedStyle(item.querySelector(".band")).backgroundColor;
+                return [chart.data.datasets.slice(0, 2).map(({ borderColor }) => borderColor),
+                        bands.map((item) => [item.innerText, shade(item)])];"""
+            )
+            said = [text.strip() for text, _ in legend]
+            self.assertEqual(said, ["force at its bound, -1.1 or 1.1", "torque at its bound, -0.75 or 0.75"])
+            pixel_at = (
+                figure
+                + """chart.draw();
+                const { top, bottom } = chart.chartArea;
+                const scale = chart.currentDevicePixelRatio;
+                const x = chart.scales.x.getPixelForValue(arguments[0]) * scale;
+                const y = (top + arguments[1] * (bottom - top)) * scale;
+                return [...chart.ctx.getImageData(x, y, 1, 1).data].slice(0, 3);"""
+            )
+            # time, share of the height from the top, and whose band is there
+            for t, height, curve in ((0.2, 0.04, 1), (0.2, 0.96, 1), (1.26, 0.04, 0), (1.26, 0.96, 1)):
+                with self.subTest(t=t, height=height):
+                    pixel = DRIVER.execute_script(pixel_at, t, height)
+                    self.assertTrue(is_tint(pixel, palette[curve]), f"{pixel} is no light {palette[curve]}")
+                    self.assertEqual(legend[curve][1], f"rgb({', '.join(map(str, pixel))})")
+            self.assertEqual(DRIVER.execute_script(pixel_at, 0.8, 0.04), [0, 0, 0], "a band where no bound is reached")
+
+    def test_the_picture_follows_the_window(self):
+        """Its shape is that of its box, at first and after, and all that moves is in it: on a telephone, too."""
+        self.addCleanup(DRIVER.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+
+        def window(width, height, scale):
+            size = {"width": width, "height": height, "deviceScaleFactor": scale, "mobile": False}
+            DRIVER.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+
+        shape = """const { camera, renderer, points } = lagroid.stage;
+            const { clientWidth, clientHeight, width, height } = renderer.domElement;
+            camera.updateMatrixWorld();
+            const seen = points.map((point) => point.clone().project(camera));
+            const farthest = Math.max(...seen.flatMap(({ x, y }) => [Math.abs(x), Math.abs(y)]));
+            return [camera.aspect, clientWidth / clientHeight, width - clientWidth * devicePixelRatio,
+                    height - clientHeight * devicePixelRatio, farthest];"""
+
+        def has_the_shape_of_its_box():
+            aspect, box, across, down, farthest = DRIVER.execute_script(shape)
+            return abs(aspect - box) < 1e-6 and across == down == 0 and 0.6 < farthest < 1
+
+        with tempfile.TemporaryDirectory() as folder:
+            page = page_of(pathlib.Path(folder) / "run", "rolling_disk")
+            window(390, 800, 2)
+            self.open(page)
+            for size in ((390, 800, 2), (1300, 500, 1), (320, 900, 1)):
+                with self.subTest(size):
+                    window(*size)
+                    self.assertTrue(eventually(has_the_shape_of_its_box, 5), DRIVER.execute_script(shape))
+                    wider = "return document.documentElement.scrollWidth > innerWidth"
+                    self.assertFalse(DRIVER.execute_script(wider), "the page is wider than its window")
+            where = "return lagroid.stage.camera.position.toArray()"
+            before = DRIVER.execute_script(where)
+            DRIVER.find_element("id", "bodies").send_keys(Keys.ARROW_LEFT)
+            self.assertNotEqual(DRIVER.execute_script(where), before, "arrow keys turn nothing")
+
+    def test_without_webgl(self):
+        """A sentence says what is missing; plots, time and table go on."""
+        with tempfile.TemporaryDirectory() as folder:
+            page = page_of(pathlib.Path(folder) / "run", "rigid_body")
+            driver = browser("disable-gpu", "disable-3d-apis")
+            self.addCleanup(driver.quit)
+            driver.get(page.as_uri())
+            self.assertEqual(severe(driver), [])
+            nothing = driver.find_element("id", "nothing")
+            self.assertTrue(nothing.is_displayed())
+            self.assertIn("WebGL", nothing.text)
+            self.assertIn("plots", nothing.text)
+            self.assertFalse(driver.find_element("id", "camera").is_displayed())
+            self.assertGreater(min(driver.execute_script("return lagroid.plots.points()")), 10)
+            self.assertGreater(len(driver.find_elements("css selector", "#ledger tbody td")), 4)
+            before = driver.execute_script("return lagroid.player.t")
+            self.assertTrue(eventually(lambda: driver.execute_script("return lagroid.player.t") != before))
+            self.assertNotEqual(driver.find_element("id", "clock").text, "")
+            self.assertGreater(len(driver.find_elements("css selector", "#speed option")), 1)
 
     def test_what_happened(self):
         """Events are points on the curves, a section of their own, and a list that leads to their times."""
@@ -170,7 +290,8 @@ class Page(unittest.TestCase):
             self.assertGreater(rows, 5)
             self.assertIn(rows, drawn[0])
             self.assertEqual(drawn[1], [rows])
-            options = DRIVER.execute_script("return [...document.getElementById('happened').options].map((o) => o.text)")
+            texts = "return [...document.querySelectorAll('#happened option')].map(({ text }) => text)"
+            options = DRIVER.execute_script(texts)
             self.assertEqual(len(options), rows + 1)
             self.assertTrue(options[1].startswith("it's far, falling, t = "), options[1])
             at = DRIVER.execute_script(
@@ -234,12 +355,7 @@ class Page(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    options = webdriver.ChromeOptions()
-    for flag in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "use-angle=swiftshader",
-                 "enable-unsafe-swiftshader", "window-size=1200,900"):
-        options.add_argument(f"--{flag}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    DRIVER = webdriver.Chrome(options=options)
+    DRIVER = browser("use-angle=swiftshader", "enable-unsafe-swiftshader")
     try:
         unittest.main(argv=sys.argv[:1], verbosity=2)
     finally:

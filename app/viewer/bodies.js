@@ -5,6 +5,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { reader } from "./frames.js";
 
 const palette = [0x2f6fde, 0xe4572e, 0x2a9d6f, 0x8e5bd0, 0xd9a514, 0x3aa6b9];
+const white = new THREE.Color(0xffffff);
 
 /** Squares in two shades, so that a turning surface is seen to turn. */
 function checkers(color, across, down) {
@@ -12,7 +13,7 @@ function checkers(color, across, down) {
   canvas.width = 16 * across;
   canvas.height = 16 * down;
   const paint = canvas.getContext("2d");
-  const light = new THREE.Color(color).lerp(new THREE.Color(0xffffff), 0.6);
+  const light = new THREE.Color(color).lerp(white, 0.6);
   for (let i = 0; i < across; ++i)
     for (let j = 0; j < down; ++j) {
       paint.fillStyle = `#${((i + j) % 2 ? light : new THREE.Color(color)).getHexString()}`;
@@ -24,6 +25,7 @@ function checkers(color, across, down) {
   return texture;
 }
 
+const upwards = new THREE.Vector3(0, 0, 1);
 const turnedUp = (geometry) => geometry.rotateX(Math.PI / 2);  // three's cylinders stand on y
 
 /** Kind of shape -> mesh, its third axis the one of symmetry. */
@@ -36,7 +38,7 @@ const kinds = {
     new THREE.Mesh(
       new THREE.BoxGeometry(x, y, z),
       [0, 0.25, 0.5, 0.1, 0.35, 0.6].map(
-        (white) => new THREE.MeshStandardMaterial({ color: new THREE.Color(color).lerp(new THREE.Color(0xffffff), white) }))),
+        (share) => new THREE.MeshStandardMaterial({ color: new THREE.Color(color).lerp(white, share) }))),
   disk: ([radius, thickness], color) =>
     new THREE.Mesh(
       turnedUp(new THREE.CylinderGeometry(radius, radius, thickness, 64)),
@@ -53,8 +55,22 @@ const kinds = {
   plate: (_, color) =>
     new THREE.Mesh(
       new THREE.CircleGeometry(1, 96),
-      new THREE.MeshStandardMaterial({ map: checkers(color, 16, 16), side: THREE.DoubleSide, transparent: true, opacity: 0.45 })),
+      new THREE.MeshStandardMaterial({
+        map: checkers(color, 16, 16), side: THREE.DoubleSide, transparent: true, opacity: 0.45 })),
 };
+
+/** Points on the circle of radius 1. */
+function rim() {
+  const at = (i) => new THREE.Vector3(1, 0, 0).applyAxisAngle(upwards, (i * Math.PI) / 8);
+  return Array.from({ length: 16 }, (_, i) => at(i));
+}
+
+/** The corners of a box around a geometry. */
+function corners(geometry) {
+  if (!geometry.boundingBox) geometry.computeBoundingBox();
+  const ends = [geometry.boundingBox.min, geometry.boundingBox.max];
+  return ends.flatMap(({ x }) => ends.flatMap(({ y }) => ends.map(({ z }) => new THREE.Vector3(x, y, z))));
+}
 
 /** One shape: a mesh that `place(row)` moves, and the line its centre draws. */
 class Body {
@@ -103,9 +119,17 @@ class Body {
     const length = along.length();
     this.mesh.visible = length > 0;  // what is switched off ends where it begins
     if (length === 0) return;
-    this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), along.clone().normalize());
+    this.group.quaternion.setFromUnitVectors(upwards, along.clone().normalize());
     this.mesh.scale.z = length / this.length;
     this.mesh.position.z = length / 2;
+  }
+
+  /** Points of its outline where it is: the corners of a box around it, or the rim of a plate. */
+  outline() {
+    if (!this.mesh.visible) return [];
+    this.group.updateMatrixWorld(true);
+    const points = this.kind === "plate" ? rim() : corners(this.mesh.geometry);
+    return points.map((point) => point.applyMatrix4(this.mesh.matrixWorld));
   }
 
   centre() {
@@ -123,11 +147,20 @@ class Body {
   }
 }
 
-/** The stage: everything that moves, light, camera. */
+/** Where the camera stands at first, seen from what it looks at. */
+const outlook = new THREE.Vector3(0.45, -0.8, 0.4).normalize();
+
+/** three would fill the console and throw a word of its own: what is missing is said in a sentence. */
+function webgl(canvas) {
+  const context = canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
+  if (!context) throw new Error("this browser has no WebGL 2, or has it switched off");
+  return context;
+}
+
+/** The stage: everything that moves, light, camera. Throws where it cannot be drawn. */
 export class Stage {
   constructor(canvas, run) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(window.devicePixelRatio);
+    this.renderer = new THREE.WebGLRenderer({ canvas, context: webgl(canvas) });
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(0xf7f9fc);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb8c0cc, 2.2));
@@ -137,43 +170,101 @@ export class Stage {
       if (trail) this.scene.add(trail);
     }
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.01, 1000);
-    this.camera.up.set(0, 0, 1);
+    this.camera.up.copy(upwards);
     const sun = new THREE.DirectionalLight(0xffffff, 2);
     sun.position.set(1, -1, 3);
     this.camera.add(sun);
     this.scene.add(this.camera);
     this.controls = new OrbitControls(this.camera, canvas);
+    canvas.addEventListener("keydown", (event) => this.turnBy(event));
     const plates = this.bodies.filter(({ kind }) => kind === "plate");
-    this.bounds = this.measure(this.bodies.filter(({ kind }) => kind !== "plate"), run.time.length);
-    for (const { group } of plates) {
-      const { min, max } = this.bounds;
+    this.points = this.measure(this.bodies.filter(({ kind }) => kind !== "plate"), run.time.length);
+    const { min, max } = new THREE.Box3().setFromPoints(this.points);
+    for (const { group } of this.points.length > 0 ? plates : [])
       group.scale.setScalar(1.1 * Math.hypot(Math.max(-min.x, max.x), Math.max(-min.y, max.y)));
-    }
-    this.bounds.union(this.measure(plates, 1));
+    this.points.push(...this.measure(plates, 1));
+    this.centre = new THREE.Box3().setFromPoints(this.points).getCenter(new THREE.Vector3());
+    this.takeShape();
     this.lookAtAll();
   }
 
-  /** The box that holds these bodies at every row (at most a few hundred of them). */
+  /** The outlines of these bodies at every row (at most a few hundred of them). */
   measure(bodies, rows) {
-    const bounds = new THREE.Box3();
+    const points = [];
     const stride = Math.max(1, Math.floor(rows / 200));
     for (let row = 0; row < rows; row += stride)
       for (const body of bodies) {
         body.place(row);
-        body.group.updateMatrixWorld(true);
-        bounds.expandByObject(body.group);
+        points.push(...body.outline());
       }
-    return bounds;
+    return points;
+  }
+
+  /** From how far all is seen, with a margin: the narrower of width and height decides. */
+  distanceToAll() {
+    const right = new THREE.Vector3().crossVectors(this.camera.up, outlook).normalize();
+    const above = new THREE.Vector3().crossVectors(outlook, right);
+    const high = Math.tan((this.camera.fov * Math.PI) / 360) / 1.1;
+    const wide = high * this.camera.aspect;
+    let distance = 0;
+    const from = new THREE.Vector3();
+    for (const point of this.points) {
+      from.subVectors(point, this.centre);
+      const aside = Math.max(Math.abs(from.dot(right)) / wide, Math.abs(from.dot(above)) / high);
+      distance = Math.max(distance, aside + from.dot(outlook));
+    }
+    return distance || 1;
   }
 
   lookAtAll() {
-    const sphere = this.bounds.getBoundingSphere(new THREE.Sphere());
-    const distance = (0.8 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360);
-    this.camera.position.copy(sphere.center).add(new THREE.Vector3(0.45, -0.8, 0.4).normalize().multiplyScalar(distance));
-    this.camera.near = distance / 100;
-    this.camera.far = distance * 20;
-    this.controls.target.copy(sphere.center);
+    this.controls.target.copy(this.centre);
+    this.distance = this.distanceToAll();
+    this.stand(outlook.clone().multiplyScalar(this.distance));
+  }
+
+  /** Puts the camera there, seen from what it looks at. */
+  stand(offset) {
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.camera.near = this.distance / 100;
+    this.camera.far = this.distance * 20;
+    this.camera.updateProjectionMatrix();
     this.controls.update();
+  }
+
+  /** By keys what the mouse does: arrows turn the picture, plus and minus bring it nearer and away. */
+  turnBy(event) {
+    const by = {
+      ArrowLeft: () => this.controls.rotateLeft(-0.1),
+      ArrowRight: () => this.controls.rotateLeft(0.1),
+      ArrowUp: () => this.controls.rotateUp(-0.1),
+      ArrowDown: () => this.controls.rotateUp(0.1),
+      "+": () => this.controls.dollyIn(0.9),
+      "-": () => this.controls.dollyOut(0.9),
+    };
+    if (!by[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    by[event.key]();
+  }
+
+  /** The canvas has the shape of its box, whatever the window's; whether that changed. */
+  takeShape() {
+    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
+    const size = this.renderer.getSize(new THREE.Vector2());
+    const ratio = window.devicePixelRatio || 1;
+    if (width === 0 || height === 0) return false;
+    if (size.x === width && size.y === height && this.renderer.getPixelRatio() === ratio) return false;
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    return true;
+  }
+
+  /** Keeps all in sight that was, from the side from which somebody looks. */
+  keepInSight() {
+    const before = this.distance;
+    this.distance = this.distanceToAll();
+    this.stand(this.camera.position.clone().sub(this.controls.target).multiplyScalar(this.distance / before));
   }
 
   showTrails(visible) {
@@ -181,13 +272,7 @@ export class Stage {
   }
 
   draw(row) {
-    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
-    const size = this.renderer.getSize(new THREE.Vector2());
-    if (size.x !== width || size.y !== height) {
-      this.renderer.setSize(width, height, false);
-      this.camera.aspect = width / Math.max(1, height);
-      this.camera.updateProjectionMatrix();
-    }
+    if (this.takeShape()) this.keepInSight();
     for (const body of this.bodies) body.place(row);
     this.renderer.render(this.scene, this.camera);
   }

@@ -12,7 +12,9 @@ export function happened(run) {
 }
 
 const points = (rows, x, y, { x_offset = 0, y_offset = 0 } = {}) =>
-  rows.filter(({ at }) => Number.isFinite(at[x]) && Number.isFinite(at[y])).map(({ at }) => ({ x: at[x] - x_offset, y: at[y] - y_offset }));
+  rows
+    .filter(({ at }) => Number.isFinite(at[x]) && Number.isFinite(at[y]))
+    .map(({ at }) => ({ x: at[x] - x_offset, y: at[y] - y_offset }));
 
 /** Where something happened on the curves of a panel, as far as their columns are known there. */
 export const marksOn = (rows, panel) => panel.curves.flatMap((curve) => points(rows, panel.x, curve, panel));

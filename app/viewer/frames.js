@@ -21,7 +21,7 @@ export function stepReader(run, coordinate) {
   return (row) => values[Math.ceil(row)] ?? values[Math.ceil(row) + 1] ?? 0;
 }
 
-/** A function of the (fractional) row: a constant, or a recorded column. Arrows have no row at the first node: the next. */
+/** A function of the (fractional) row: a constant, or a recorded column. Of arrows the first node has the next's. */
 export function reader(run, coordinate) {
   if (typeof coordinate === "number") return () => coordinate;
   const values = run.columns[coordinate];

@@ -8,6 +8,11 @@ const element = (id) => document.getElementById(id);
 const run = JSON.parse(element("run").textContent);
 run.columns.t = run.time;
 
+/** A text is touched only where it changes: 60 times a second programs that read pages aloud would hear of it. */
+function write(id, text) {
+  if (element(id).textContent !== text) element(id).textContent = text;
+}
+
 function fillIn() {
   document.title = `${run.system} - lagroid`;
   element("title").textContent = run.system;
@@ -18,7 +23,8 @@ function fillIn() {
   for (const { name, promise, drift, relative_drift, verdict } of run.ledger) {
     const row = rows.insertRow();
     const short = (x) => (x === null ? "not a number" : x.toExponential(2));
-    for (const text of [name, promise, short(drift), short(relative_drift), verdict]) row.insertCell().textContent = text;
+    for (const text of [name, promise, short(drift), short(relative_drift), verdict])
+      row.insertCell().textContent = text;
     row.lastChild.className = verdict;
   }
   for (const note of run.notes) {
@@ -28,6 +34,37 @@ function fillIn() {
   }
 }
 
+/** A sentence where the picture would be; an empty one takes it away. */
+function sayNothing(sentence) {
+  element("nothing").textContent = sentence;
+  element("nothing").hidden = sentence === "";
+  element("bodies").hidden = sentence !== "";
+}
+
+const rest = "The plots, the time and the table work without it.";
+
+/** The bodies in space, or null where there are none or this browser cannot draw them: all else goes on. */
+function makeStage() {
+  let stage = null;
+  try {
+    if (run.shapes.length > 0) stage = new Stage(element("bodies"), run);
+    else sayNothing("This system has no picture in space; its curves are below.");
+  } catch (error) {
+    console.warn(error);
+    sayNothing(`The picture in space cannot be drawn: ${error.message}. ${rest}`);
+  }
+  document.querySelector("main").classList.toggle("flat", stage === null);
+  element("camera").hidden = stage === null;
+  element("trails").parentElement.hidden = !run.shapes.some(({ trail }) => trail) || stage === null;
+  const canvas = element("bodies");
+  canvas.addEventListener("webglcontextlost", () => sayNothing(`The graphics card has dropped the picture. ${rest}`));
+  canvas.addEventListener("webglcontextrestored", () => sayNothing(""));
+  return stage;
+}
+
+/** Whether somebody has asked the system for pages that keep still. */
+const keepsStill = () => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+
 /** The time shown: runs from the first row to the last, and again. */
 class Player {
   constructor(time) {
@@ -35,7 +72,7 @@ class Player {
     this.first = time[0];
     this.last = time[time.length - 1];
     this.t = this.first;
-    this.playing = this.last > this.first;
+    this.playing = this.last > this.first && !keepsStill();
     this.speed = this.speeds()[2];
   }
   /** From a quarter of the speed that shows all in 20 s, to four times that. */
@@ -56,8 +93,7 @@ function start() {
   fillIn();
   const player = new Player(run.time);
   const plots = new Plots(element("plots"), run);
-  const stage = run.shapes.length ? new Stage(element("bodies"), run) : null;
-  element("nothing").hidden = stage !== null;
+  const stage = makeStage();
 
   const scrub = element("scrub");
   scrub.min = player.first;
@@ -92,8 +128,8 @@ function start() {
     stage?.draw(row);
     plots.mark(row);
     if (document.activeElement !== scrub || player.playing) scrub.value = player.t;
-    element("clock").textContent = `t = ${player.t.toPrecision(5)} s`;
-    element("play").textContent = player.playing ? "Pause" : "Play";
+    write("clock", `t = ${player.t.toPrecision(5)} s`);
+    write("play", player.playing ? "Pause" : "Play");
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);

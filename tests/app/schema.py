@@ -6,6 +6,7 @@ What the reader takes fits, what does not fit the reader refuses, and a key that
 import copy
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -86,6 +87,11 @@ def beyond(declared, there):
         yield "of another dimension", there + there[:1]
 
 
+def of_kind(path, declared):
+    """What tables and keys of one kind share: the same of the first body and of the second is asked once."""
+    return re.sub(r"\d+", "0", path), json.dumps(declared, sort_keys=True)
+
+
 scenes = sorted(examples.rglob("*.toml"))
 
 
@@ -128,7 +134,7 @@ class Schema(unittest.TestCase):
     def never_taken(self, scene, path, key, declared):
         """Whether the reader knows a key only to say why it cannot stand there, as it does if it refuses a number and a
         word with the same words: asked once of all tables that are alike."""
-        alike = (key, json.dumps(declared, sort_keys=True))
+        alike = of_kind(key, declared)
         if alike not in self.refusals:
             words = {self.refusal(scene, path + key, each) for each in (0.5, "x")}
             self.refusals[alike] = None not in words and (len(words) == 1 or all(
@@ -141,9 +147,13 @@ class Schema(unittest.TestCase):
         return {key for key in known - there if not self.never_taken(scene, path, key, declared)}, there - known
 
     def test_every_key_that_the_reader_knows_is_there(self):
-        dependent_and_read = set()
+        dependent_and_read, asked = set(), set()
         for scene in scenes:
-            for path, _, declared in tables_of(tomllib.loads(scene.read_text()), self.whole):
+            for path, value, declared in tables_of(tomllib.loads(scene.read_text()), self.whole):
+                alike = (*of_kind(path, declared), frozenset(value))
+                if alike in asked:
+                    continue
+                asked.add(alike)
                 with self.subTest(scene=scene.name, path=path):
                     missing, unread = self.differences(scene, path, declared)
                     self.assertEqual((missing, unread - DEPENDENT), (set(), set()))
@@ -170,7 +180,7 @@ class Schema(unittest.TestCase):
             content = tomllib.loads(scene.read_text())
             for path, there, table in tables_of(content, self.whole):
                 for key, declared in table["properties"].items():
-                    alike = (path, key, json.dumps(declared, sort_keys=True))
+                    alike = of_kind(path + key, declared)
                     if alike in asked:
                         continue
                     asked.add(alike)
