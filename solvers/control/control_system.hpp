@@ -58,8 +58,9 @@ struct StagePlaces {
 ///     Vector<S, node_equalities> node_constraint(const Object<S>& q)
 ///
 /// Where its parameters ask for no inequality, it may say so, `bool has_inequalities() const`: then none is evaluated.
-/// One that knows the derivatives of its stages, second ones of l + <lambda, phi>, writes them (else they are
-/// automatic):
+/// Where they depend on the arrow's end and the controls alone, `static constexpr bool inequalities_of_end = true`
+/// makes their derivatives cheaper (end_inequalities.hpp). One that knows the derivatives of its stages, second ones of
+/// l + <lambda, phi>, writes them (else they are automatic):
 ///
 ///     void stage_derivatives(g, u, h, const double* lambda, const StagePlaces& out)
 ///

@@ -17,6 +17,8 @@
 #include <lagroid/core/scalars/second_jet.hpp>
 #include <lagroid/groupoids/product.hpp>
 
+#include <array>
+#include <cstddef>
 #include <tuple>
 #include <utility>
 
@@ -31,23 +33,30 @@ template <class T, int N, int Count> struct WithDirections<SecondJet<T, N>, Coun
   using Type = SecondJet<T, Count>;
 };
 
-/// x with its first n directions in the places from `source` on, and its last n in those from `target` on.
-template <class J, int n, class Few> J with_directions_at(const Few& x, int source, int target) {
+/// x with its directions, n by n, in the places from each of `at` on.
+template <class J, int n, class Few, std::size_t Blocks>
+J with_directions_at(const Few& x, const std::array<int, Blocks>& at) {
   const auto widened = [&](const auto& few) {
     auto out = J::along(0, 0.0);
-    for (int i = 0; i < n; ++i) {
-      out.set(source + i, few(i));
-      out.set(target + i, few(n + i));
-    }
+    for (int i = 0; i < n; ++i)
+      for (std::size_t block = 0; block < Blocks; ++block) out.set(at[block] + i, few(int(block) * n + i));
     return out;
   };
   J out(x.value, widened([&](int i) { return x.gradient(i); }));
   if constexpr (requires { x.hessian(0, 0); })
-    for (int half = 0; half < 2; ++half)
+    for (std::size_t block = 0; block < Blocks; ++block)
       for (int i = 0; i < n; ++i)
-        out.set_row((half == 0 ? source : target) + i,
-                    widened([&, row = half * n + i](int j) { return x.hessian(row, j); }));
+        out.set_row(at[block] + i, widened([&, row = int(block) * n + i](int j) { return x.hessian(row, j); }));
   return out;
+}
+
+/// An arrow over J, of one over fewer directions.
+template <class J, class G, class Arrow, std::size_t Blocks>
+auto widened_arrow(const G& groupoid, const Arrow& arrow, const std::array<int, Blocks>& at) {
+  const auto few = groupoid.coordinates_of_arrow(arrow);
+  Vector<J, G::arrow_coordinate_count()> x;
+  for (int i = 0; i < x.size(); ++i) x(i) = with_directions_at<J, G::dimension>(few(i), at);
+  return groupoid.template arrow_at<J>(x);
 }
 
 }  // namespace detail
@@ -61,10 +70,8 @@ template <class J, class G> auto displaced_jet(const G& groupoid, const ArrowOf<
     a(i) = Few::variable(0, i);
     b(i) = Few::variable(0, n + i);
   }
-  const auto few = groupoid.coordinates_of_arrow(groupoid.translate(a, groupoid.template cast<Few>(g), b));
-  Vector<J, G::arrow_coordinate_count()> x;
-  for (int i = 0; i < x.size(); ++i) x(i) = detail::with_directions_at<J, n>(few(i), source, target);
-  return groupoid.template arrow_at<J>(x);
+  return detail::widened_arrow<J>(groupoid, groupoid.translate(a, groupoid.template cast<Few>(g), b),
+                                  std::array{source, target});
 }
 template <class J, class... Gs>
 auto displaced_jet(const Product<Gs...>& groupoid, const ArrowOf<Product<Gs...>>& g, int source, int target) {
@@ -72,6 +79,28 @@ auto displaced_jet(const Product<Gs...>& groupoid, const ArrowOf<Product<Gs...>>
   const auto displaced = [&]<class F, class A>(const F& factor, const A& arrow) {
     const int begin = std::exchange(at, at + F::dimension);
     return displaced_jet<J>(factor, arrow, source + begin, target + begin);
+  };
+  return [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return ArrowOf<Product<Gs...>, J>{displaced(std::get<I>(groupoid.factor), std::get<I>(g))...};
+  }
+  (std::index_sequence_for<Gs...>());
+}
+
+/// g tau(b) alone, b_i the infinitesimal Target + i.
+template <class J, class G> auto displaced_end_jet(const G& groupoid, const ArrowOf<G>& g, int target) {
+  constexpr int n = G::dimension;
+  using Few = typename detail::WithDirections<J, n>::Type;
+  const Vector<Few, n> zero = Vector<Few, n>::Constant(Few(0.0));
+  Vector<Few, n> b;
+  for (int i = 0; i < n; ++i) b(i) = Few::variable(0, i);
+  return detail::widened_arrow<J>(groupoid, groupoid.translate(zero, groupoid.template cast<Few>(g), b),
+                                  std::array{target});
+}
+template <class J, class... Gs>
+auto displaced_end_jet(const Product<Gs...>& groupoid, const ArrowOf<Product<Gs...>>& g, int target) {
+  int at = target;
+  const auto displaced = [&]<class F, class A>(const F& factor, const A& arrow) {
+    return displaced_end_jet<J>(factor, arrow, std::exchange(at, at + F::dimension));
   };
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
     return ArrowOf<Product<Gs...>, J>{displaced(std::get<I>(groupoid.factor), std::get<I>(g))...};

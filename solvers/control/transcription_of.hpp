@@ -15,6 +15,7 @@
 #include <lagroid/core/scalars/second_jet.hpp>
 #include <lagroid/solvers/control/control_system.hpp>
 #include <lagroid/solvers/control/displaced_jet.hpp>
+#include <lagroid/solvers/control/end_inequalities.hpp>
 #include <lagroid/solvers/control/transcription.hpp>
 
 #include <algorithm>
@@ -342,7 +343,11 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   template <Part Which>
   void by_jets(const Sys& system, long stage, double h, const double* lambda, const double* z,
                StageDerivatives& out) const {
-    if constexpr (framed) {
+    if constexpr (Which == Part::inequalities && InequalitiesOfEnd<Sys>) {
+      const auto at = std::size_t(stage);
+      inequalities_of_end(system, now_.path.arrows[at], now_.path.controls[at], h, z, out.inequality[stage],
+                          out.hessian[stage]);
+    } else if constexpr (framed) {
       along_frame<Which>(system, stage, h, lambda, z, out);
     } else {
       along_ends<Which>(system, stage, h, lambda, z, out);

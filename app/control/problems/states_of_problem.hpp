@@ -73,9 +73,12 @@ template <class Sys>
 bool nothing_bounds_time(const ControlPhase<Sys>& phase, const ArrowOf<typename Sys::GroupoidType>& along) {
   using Controls = Vector<double, Sys::controls>;
   constexpr double rounding = 1e-9;
-  if (!phase.duration_is_free || phase.shortest > 0 || (Sys::inequalities > 0 && phase.inequalities_hold)) return false;
-  const double h = phase.duration / double(phase.stages);
   const auto& system = phase.system;
+  bool has_inequalities = Sys::inequalities > 0 && phase.inequalities_hold;
+  if constexpr (requires { system.has_inequalities(); })
+    has_inequalities = has_inequalities && system.has_inequalities();
+  if (!phase.duration_is_free || phase.shortest > 0 || has_inequalities) return false;
+  const double h = phase.duration / double(phase.stages);
   const Controls none = Controls::Zero();
   for (int i = 0; i < Sys::controls; ++i) {
     const Controls one = Controls::Unit(i);

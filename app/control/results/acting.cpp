@@ -17,8 +17,9 @@ template <class Mark> std::vector<StageRange> ranges(const ControlResult& found,
   return out;
 }
 
-/// A multiplier that is larger acts.
+/// A multiplier that is larger acts; those of an iterate say nothing.
 double threshold(const ControlResult& found) {
+  if (!found.report.converged()) return HUGE_VAL;
   double largest = 0;
   for (const auto& row : found.inequality_rows)
     for (const double z : row) largest = std::max(largest, z);

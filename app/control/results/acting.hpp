@@ -5,7 +5,7 @@
 ///       shade(found.times[each.first], found.times[each.end]);
 ///
 /// An inequality acts where its multiplier is above a millionth of the largest, and a control is at a bound to a
-/// millionth of its size. Nothing throws.
+/// millionth of its size. Of a result that did not converge no inequality acts. Nothing throws.
 
 #include "../control_problem.hpp"
 

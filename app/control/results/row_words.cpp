@@ -61,7 +61,6 @@ std::vector<std::string> repeated_in_words(const ControlResult& found) {
 
 std::vector<ActingInequality> acting_inequalities(const ControlResult& found) {
   std::vector<ActingInequality> out;
-  if (!found.report.converged()) return out;
   for (const std::string& name : found.inequalities) {
     if (std::any_of(out.begin(), out.end(), [&](const ActingInequality& other) { return other.name == name; }))
       continue;

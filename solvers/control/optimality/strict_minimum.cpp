@@ -7,19 +7,15 @@ namespace lagroid {
 bool is_strict_minimum(StageKkt& kkt, const StageDerivatives& derivatives, const StageRows& multipliers,
                        const StageRows& slacks, StageRows& sigma, StageRows& dual) {
   constexpr double least_pivot = 1e-18;
-  constexpr double relaxed = 1e-11;  // of equalities that depend on each other
+  constexpr double idle = 1e-6;  // sigma of what is nowhere near to acting
   for (std::size_t i = 0; i < sigma.numbers().size(); ++i) {
-    const double z = multipliers.numbers()[i];
-    const double s = slacks.numbers()[i];
-    sigma.numbers()[i] = z > s ? z / s : -z / s;
+    const double of_it = multipliers.numbers()[i] / slacks.numbers()[i];
+    sigma.numbers()[i] = of_it < idle ? -of_it : of_it;
   }
   kkt.assemble(derivatives, sigma);
-  for (const double shift : {0.0, relaxed}) {
-    set_all(dual, shift);
-    const StageKkt::Inertia inertia = kkt.factor(0, dual);
-    if (inertia.smallest > least_pivot) return inertia.negative == kkt.equalities();
-  }
-  return false;
+  set_all(dual, 0);
+  const StageKkt::Inertia inertia = kkt.factor(0, dual);
+  return inertia.smallest > least_pivot && inertia.negative == kkt.equalities();
 }
 
 }  // namespace lagroid

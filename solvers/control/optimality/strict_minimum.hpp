@@ -5,11 +5,12 @@
 /// and a little, mu / s_i^2, where it does not. Of a cost that is level along some direction, as where every motion
 /// costs the same, that little alone would make a minimum. It therefore stands in the matrix with its sign turned: a
 /// minimum that does not rest on it keeps its inertia, and vertices (bang-bang controls) keep pivots that are not zero.
+/// What may act (z_i / s_i above a millionth) keeps its sign.
 ///
 ///     const bool strict = is_strict_minimum(kkt, derivatives, multipliers, slacks, sigma, dual);
 ///
-/// Requires multipliers z >= 0 and slacks s > 0 of a solution, and two workspaces, rows of gamma and of phi. Equalities
-/// that repeat each other are no hindrance. No allocation. Nothing throws.
+/// Requires multipliers z >= 0 and slacks s > 0 of a solution, and two workspaces, rows of gamma and of phi. Where
+/// equalities repeat each other the inertia says nothing, and the answer is no. No allocation. Nothing throws.
 
 #include <lagroid/solvers/control/stage_kkt.hpp>
 

@@ -36,6 +36,7 @@ struct DoubleIntegrator : ControlledFlow<DoubleIntegrator, Pair<2>, 1, 2> {
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 1>& u) const {
     return running_cost_of(cost_of, u);
   }
+  static constexpr bool inequalities_of_end = true;
   bool has_inequalities() const { return largest_speed > 0; }
   template <class S> Vector<S, 2> inequality(const PairArrow<S, 2>& g, const Vector<S, 1>&, const S&) const {
     if (largest_speed == 0) return {S(-1.0), S(-1.0)};

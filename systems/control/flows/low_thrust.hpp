@@ -44,6 +44,7 @@ struct LowThrust : ControlledFlow<LowThrust, Pair<4>, 2, 1> {
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 2>& u) const {
     return running_cost_of(cost_of, u);
   }
+  static constexpr bool inequalities_of_end = true;
   bool has_inequalities() const { return largest_thrust > 0; }
   template <class S> Vector<S, 1> inequality(const PairArrow<S, 4>&, const Vector<S, 2>& u, const S&) const {
     if (largest_thrust == 0) return Vector<S, 1>(S(-1.0));

@@ -41,6 +41,7 @@ struct PlanarMass : ControlledFlow<PlanarMass, Pair<4>, 2, 2> {
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 2>& u) const {
     return running_cost_of(cost_of, u);
   }
+  static constexpr bool inequalities_of_end = true;
   bool has_inequalities() const { return largest_force > 0 || disk_radius > 0; }
   template <class S> Vector<S, 2> inequality(const PairArrow<S, 4>& g, const Vector<S, 2>& u, const S&) const {
     S force(-1.0);

@@ -58,6 +58,7 @@ struct RolledBall : ControlledFlow<RolledBall, Product<Pair<2>, SO3>, /*controls
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 2>& u) const {
     return running_cost_of(cost_of, u);
   }
+  static constexpr bool inequalities_of_end = true;
   bool has_inequalities() const { return largest_speed > 0; }
   template <class A, class S> Vector<S, 1> inequality(const A&, const Vector<S, 2>& u, const S&) const {
     if (largest_speed == 0) return Vector<S, 1>(S(-1.0));

@@ -56,6 +56,7 @@ struct SatelliteTurn : ControlledFlow<SatelliteTurn, Product<Action<SO3, Rotated
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 3>& u) const {
     return running_cost_of(cost_of, u);
   }
+  static constexpr bool inequalities_of_end = true;
   bool has_inequalities() const { return cone > 0; }
   template <class A, class S> Vector<S, 1> inequality(const A& g, const Vector<S, 3>&, const S&) const {
     using std::cos;

@@ -47,6 +47,7 @@ struct SteeredCar : ControlledFlow<SteeredCar, Product<SE2, Pair<2>>, 2, 2> {
   template <class Q, class S> S running_cost(const Q&, const Vector<S, 2>& u) const {
     return running_cost_of(cost_of, u);
   }
+  static constexpr bool inequalities_of_end = true;
   template <class A, class S> Vector<S, 2> inequality(const A& g, const Vector<S, 2>&, const S&) const {
     const auto& to = std::get<1>(g).target;
     return {to(1) - largest_steering, -to(1) - largest_steering};

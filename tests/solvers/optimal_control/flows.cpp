@@ -5,6 +5,7 @@
 #include <lagroid/systems/control/flows/dubins_car.hpp>
 #include <lagroid/systems/control/flows/hovercraft.hpp>
 #include <lagroid/systems/control/flows/low_thrust.hpp>
+#include <lagroid/systems/control/flows/planar_mass.hpp>
 #include <lagroid/systems/control/flows/rolled_ball.hpp>
 #include <lagroid/systems/control/flows/satellite_turn.hpp>
 #include <lagroid/systems/control/flows/steered_car.hpp>
@@ -124,6 +125,26 @@ struct Careless : DubinsCar {
 };
 
 TEST(FlowDerivatives, LeftOutAreNoticed) { EXPECT_GT(defect(Careless()), 1e-3); }
+
+/// Its inequality is of where the arrow begins, whatever it says.
+struct Misread : DoubleIntegrator {
+  template <class S> Vector<S, 2> inequality(const PairArrow<S, 2>& g, const Vector<S, 1>&, const S&) const {
+    return {g.source(1) - largest_speed, -g.source(1) - largest_speed};
+  }
+};
+
+TEST(FlowDerivatives, OfInequalitiesThatAreNotOfTheEndAreNoticed) {
+  Misread cart;
+  cart.largest_speed = 1;
+  EXPECT_GT(defect(cart), 1e-3);
+}
+
+TEST(FlowDerivatives, OfAMassBesideADisk) {
+  PlanarMass mass;
+  mass.disk_radius = 0.5;
+  mass.largest_force = 2;
+  EXPECT_LT(defect(mass), rounding);
+}
 
 TEST(FlowDerivatives, OfASatelliteBesideACone) {
   SatelliteTurn satellite;
