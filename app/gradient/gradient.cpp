@@ -1,6 +1,7 @@
 #include "columns/computed_columns.hpp"
 #include "fit/fit_command.hpp"
 #include "gradient_table.hpp"
+#include "minima/minimum_gradient.hpp"
 #include "system_gradients.hpp"
 #include "uncertainty.hpp"
 
@@ -73,6 +74,9 @@ template <class Use>
 int with_subject(const SceneOptions& options, const std::vector<AskGradient>& subjects, const Use& use) {
   const Section scene = read_scene(options.scene, options.overrides);
   require_family(scene);
+  if (scene.has(keys::optimisation))
+    scene.fail(keys::optimisation,
+               "is no motion that measured columns could tell of; lagroid gradient has derivatives of its minimum");
   for (const AskGradient ask : subjects) {
     try {
       const auto subject = ask(scene);
@@ -92,7 +96,24 @@ int with_subject(const SceneOptions& options, const std::vector<AskGradient>& su
       fmt::format("{}: there are no derivatives of runs of {}", options.scene, module_of_scene(scene).name()));
 }
 
-int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects) {
+/// Of a scene of `lagroid optimize`, whose minimum is asked for by other words.
+int gradient_of_optimum(const GradientOptions& options, const Section& scene, ServeMinimum minima) {
+  if (minima == nullptr) scene.fail(keys::optimisation, "this program has no derivatives of minima");
+  for (const auto& [is_given, option] :
+       {std::pair(!options.columns.empty(), "--column"), std::pair(!options.deviations.empty(), "--deviations"),
+        std::pair(!options.covariance.empty(), "--covariance"), std::pair(options.draws.count > 0, "--draws")})
+    if (is_given)
+      return refuse(options.json, exit_bad_input, "invalid_command_line",
+                    fmt::format("{}: is of runs; of a minimum there are derivatives alone", option));
+  MinimumRequest request{options.scene, options.of, options.by, options.check, options.json};
+  if (request.of == GradientOptions{}.of) request.of.clear();
+  if (request.by == GradientOptions{}.by) request.by.clear();
+  return minima(scene, request);
+}
+
+int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects, ServeMinimum minima) {
+  if (const Section scene = read_scene(options.scene, options.overrides); scene.has(keys::optimisation))
+    return gradient_of_optimum(options, scene, minima);
   return with_subject(options, subjects, [&](const GradientSubject& plain, const Section&) {
     const auto more = [&](const GradientSubject& of) { return with_columns(of, named_texts(options.columns)); };
     if (!options.deviations.empty() || !options.covariance.empty()) {
@@ -143,6 +164,11 @@ int fit_program(int argc, char** argv, const std::vector<AskGradient>& subjects)
 }  // namespace
 
 int gradient_program(int argc, char** argv, ProgramParts parts, const std::vector<AskGradient>& subjects) {
+  return gradient_program(argc, argv, std::move(parts), subjects, nullptr);
+}
+
+int gradient_program(int argc, char** argv, ProgramParts parts, const std::vector<AskGradient>& subjects,
+                     ServeMinimum minima) {
   use_families(std::move(parts.families));
   use_systems(std::move(parts.systems));
   // As lagroid hands over to it (program.cpp), and as `lagroid-gradient fit`.
@@ -155,13 +181,15 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
          "--of", options.of,
          "final.NAME, node.K.NAME, integral.NAME or, of events, event.NAME.K.COLUMN, separated by commas: "
          "position, momentum, configuration, of Poisson systems state, energy, Casimirs, a column of them, the time t "
-         "of an event or of steps that vary; events: the times of all; of a boundary value cost "
-         "(default: all at the end, cost)")
+         "of an event or of steps that vary; events: the times of all; of a boundary value cost; of a scene of "
+         "optimize "
+         "minimum and minimiser (default: all at the end, cost, minimum)")
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_option(
          "--wrt", options.by,
-         "initial.NAME, of a boundary value boundary.start or boundary.end, or parameters.NAME, separated by commas "
+         "initial.NAME, of a boundary value boundary.start or boundary.end, or parameters.NAME, of a minimum data.NAME "
+         "too, separated by commas "
          "(default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -183,7 +211,7 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
                "compare with extrapolated differences of runs; ends with 3 where they contradict")
       ->excludes(deviations)
       ->excludes(covariance);
-  return command_line(app, argc, argv, options, [&] { return gradient_of_scene(options, subjects); });
+  return command_line(app, argc, argv, options, [&] { return gradient_of_scene(options, subjects, minima); });
 }
 
 }  // namespace lagroid::app

@@ -3,6 +3,7 @@
 #include "boundary/boundary_cost.hpp"
 #include "checks/differences.hpp"
 #include "checks/run_growth.hpp"
+#include "columns/table_lines.hpp"
 #include "event_gradient.hpp"
 
 #include <lagroid/solvers/sensitivity/propagate.hpp>
@@ -10,7 +11,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -339,21 +339,21 @@ static std::string some_of(const std::vector<std::string>& names) {
   return fmt::format("{}{}", fmt::join(first, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-static std::string words_of_differences(const GradientTable& table) {
+std::string words_of_differences(const GradientTable& table, const std::string& what) {
   std::string out;
   const std::size_t all = table.rows.size() * table.columns.size();
   if (table.untold.size() < all)
     out += table.within_rounding
                ? fmt::format(
-                     "  extrapolated differences of runs agree as far as they tell: their rounding leaves {:.1f} "
+                     "  extrapolated differences of {} agree as far as they tell: their rounding leaves {:.1f} "
                      "digits\n",
-                     table.digits_agreed)
-               : fmt::format("  extrapolated differences of runs agree to {:.1f} digits\n", table.digits_agreed);
+                     what, table.digits_agreed)
+               : fmt::format("  extrapolated differences of {} agree to {:.1f} digits\n", what, table.digits_agreed);
   if (!table.contradicted.empty())
     out += fmt::format("  they contradict {} of {} derivatives: {}\n", table.contradicted.size(), all,
                        some_of(table.contradicted));
   if (!table.untold.empty())
-    out += fmt::format("  differences of runs cannot tell, by their rounding or where runs are far apart: {}\n",
+    out += fmt::format("  differences of {0} cannot tell, by their rounding or where {0} are far apart: {1}\n", what,
                        some_of(table.untold));
   return out;
 }
@@ -389,45 +389,58 @@ static std::string lines_of_rows(const GradientTable& table) {
   return out;
 }
 
+std::string lines_of(const GradientTable& table) {
+  constexpr std::size_t many = 6;
+  return table.rows.size() == 1 && table.columns.size() > many ? lines_of_row(table) : lines_of_rows(table);
+}
+
 std::string text_of(const GradientTable& table) {
   std::string out = fmt::format("{}: exact derivatives of {} {} steps\n\n", table.system,
                                 table.of_boundary_value ? "the cost of a path of" : "a run of", table.steps);
-  constexpr std::size_t many = 6;
-  out += table.rows.size() == 1 && table.columns.size() > many ? lines_of_row(table) : lines_of_rows(table);
+  out += lines_of(table);
   out += words_of_growth(table);
-  if (table.checked) out += words_of_differences(table);
+  if (table.checked) out += words_of_differences(table, "runs");
   return out;
 }
 
-std::string json_of(const GradientTable& table) {
+/// Of a matrix, row by row.
+static nlohmann::ordered_json json_rows(const Eigen::MatrixXd& a) {
   using OrderedJson = nlohmann::ordered_json;
-  const auto matrix = [](const Eigen::MatrixXd& a) {
-    OrderedJson rows = OrderedJson::array();
-    for (Eigen::Index i = 0; i < a.rows(); ++i) {
-      OrderedJson row = OrderedJson::array();
-      for (Eigen::Index j = 0; j < a.cols(); ++j) row.push_back(a(i, j));
-      rows.push_back(row);
-    }
-    return rows;
-  };
-  OrderedJson out = {
+  OrderedJson rows = OrderedJson::array();
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    OrderedJson row = OrderedJson::array();
+    for (Eigen::Index j = 0; j < a.cols(); ++j) row.push_back(a(i, j));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void add_derivatives(const GradientTable& table, nlohmann::ordered_json& out) {
+  out["values"] = std::vector<double>(table.values.data(), table.values.data() + table.values.size());
+  out["derivatives"] = json_rows(table.derivatives);
+}
+
+void add_notes_and_check(const GradientTable& table, nlohmann::ordered_json& out) {
+  if (!table.notes.empty()) out["notes"] = table.notes;
+  if (!table.checked) return;
+  out["differences"] = json_rows(table.differences);
+  out["digits_agreed"] = table.digits_agreed;
+  out["within_rounding"] = table.within_rounding;
+  out["contradicted"] = table.contradicted;
+  out["untold"] = table.untold;
+}
+
+std::string json_of(const GradientTable& table) {
+  nlohmann::ordered_json out = {
       {"system", table.system},   {"steps", table.steps}, {"status", table.failure.empty() ? "converged" : "failed"},
       {"message", table.failure}, {"of", table.rows},     {"by", table.columns}};
   if (table.failure.empty()) {
-    out["values"] = std::vector<double>(table.values.data(), table.values.data() + table.values.size());
-    out["derivatives"] = matrix(table.derivatives);
+    add_derivatives(table, out);
     out["growth"] = table.growth;
     out["digits_left"] = table.digits_left;
     out["steps_solved"] = table.steps_solved;
     out["states_kept"] = table.states_kept;
-    if (!table.notes.empty()) out["notes"] = table.notes;
-    if (table.checked) {
-      out["differences"] = matrix(table.differences);
-      out["digits_agreed"] = table.digits_agreed;
-      out["within_rounding"] = table.within_rounding;
-      out["contradicted"] = table.contradicted;
-      out["untold"] = table.untold;
-    }
+    add_notes_and_check(table, out);
   }
   return out.dump(2);
 }

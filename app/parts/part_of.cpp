@@ -1,5 +1,6 @@
 /// The program lagroid-part: which part of lagroid a command line needs, so that no more is built (./lagroid). Prints
-/// its name: a system, bodies, spheres, poisson, files where no scene is run, or whole.
+/// its name: a system, bodies, spheres, poisson, optimisation for derivatives of minima, files where no scene is run,
+/// or whole.
 
 #include "../command/command.hpp"
 #include "../reading/kinds.hpp"
@@ -22,7 +23,8 @@ constexpr const char* whole = "whole";
 constexpr const char* least = "files";
 
 /// The part for a scene: by the key that its family is recognised by.
-std::string part_of(const Section& scene) {
+std::string part_of(const Section& scene, bool of_derivatives) {
+  if (of_derivatives && scene.has(keys::optimisation)) return "optimisation";
   if (scene.has(keys::bodies) && !scene.has(keys::control)) return "bodies";
   if (!scene.has(keys::system) || scene.has(keys::sweep) || scene.has(keys::optimisation) || scene.has(keys::control))
     return whole;
@@ -71,9 +73,10 @@ int main(int argc, char** argv) {
     std::string part = whole;
     if (std::any_of(scenes.begin(), scenes.end(), given)) {
       // What is not there is told by the program that is built first.
-      part = there(options.scene) ? part_of(read_scene(options.scene, options.overrides)) : least;
+      const bool of_derivatives = scenes[3]->parsed() || scenes[4]->parsed();
+      part = there(options.scene) ? part_of(read_scene(options.scene, options.overrides), of_derivatives) : least;
     } else if (resume->parsed()) {
-      part = there(kept) ? part_of(read_scene(kept, {})) : least;
+      part = there(kept) ? part_of(read_scene(kept, {}), false) : least;
     } else if (std::any_of(folders.begin(), folders.end(), given)) {
       part = least;
     }

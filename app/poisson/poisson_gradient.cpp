@@ -3,6 +3,7 @@
 #include "poisson_node.hpp"
 #include "poisson_run.hpp"
 
+#include <lagroid/solvers/poisson/poisson_methods.hpp>
 #include <lagroid/solvers/sensitivity/linearised_poisson_motion.hpp>
 
 #include <algorithm>
@@ -51,6 +52,10 @@ std::optional<GradientSubject> poisson_gradient(const Section& scene) {
   GradientSubject out;
   out.system = entry->name;
   out.steps = read.extent.steps;
+  if (read.to_check.options.method == poisson_methods::extrapolation.name) {
+    out.notes.emplace_back("derivatives hold the inner steps that the tolerance asked for between nodes");
+    out.tolerance = read.to_check.options.tolerance;
+  }
   for (const std::string& label : entry->labels) out.start.push_back({"state", label});
   out.observed = out.start;
   out.observed.push_back({"energy", "energy"});

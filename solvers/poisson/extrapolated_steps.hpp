@@ -10,23 +10,28 @@
 ///
 /// `step` is the distance of the nodes, above zero; between them steps are as long as the tolerance allows. A system
 /// with `in_lanes` has formulas over Batch (core/scalars/batch.hpp), in which four rows go on side by side. What is
-/// kept where gradients depend on each other says levels.hpp. Requires and throws as poisson_integrator.hpp; also
+/// kept where gradients depend on each other says levels.hpp. Derivatives of a step hold the inner steps that the
+/// tolerance asked for (held_steps.hpp). Requires and throws as poisson_integrator.hpp; also
 /// std::invalid_argument for a step or a tolerance that is not positive. Status as ExtrapolationIntegrator
 /// (solvers/extrapolation/extrapolation_integrator.hpp).
 ///
 /// Source: as there, and levels.hpp.
 
 #include <lagroid/solvers/extrapolation/extrapolation_integrator.hpp>
+#include <lagroid/solvers/poisson/held_steps.hpp>
 #include <lagroid/solvers/poisson/levels.hpp>
 #include <lagroid/solvers/poisson/poisson_integrator.hpp>
 #include <lagroid/solvers/poisson/poisson_methods.hpp>
+#include <lagroid/solvers/poisson/step_slopes.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -39,35 +44,23 @@ concept InLanes = requires {
 
 namespace detail {
 
-/// R^N as a homogeneous space of itself, whose points are taken back to the levels of a motion.
-template <class Sys> struct LevelSpace {
+template <class Sys> using RowSpace = FlatSpace<std::conditional_t<InLanes<Sys>, RowBatch, double>, Sys::dimension>;
+
+/// R^N, the points of which are taken back to the levels of a motion.
+template <class Sys> struct LevelSpace : RowSpace<Sys> {
   static constexpr int n = Sys::dimension;
-  using S = std::conditional_t<InLanes<Sys>, RowBatch, double>;
-  using Point = Vector<S, n>;
-  using Algebra = Point;
+  using typename RowSpace<Sys>::S;
+  using typename RowSpace<Sys>::Point;
   const Sys* system;
   const Levels<Sys, true>* levels;
 
-  void act(const Algebra& u, Point& z) const {
-    for (int i = 0; i < n; ++i) z(i) += u(i);
-  }
-  /// By 2 h u; where a row begins, by half of that.
-  void leap(const S& h, const Algebra& u, Point& z) const {
-    for (int i = 0; i < n; ++i) z(i) += u(i) * (h * 2.0);
-  }
-  void leap(const S& h, const S& halved, const Algebra& u, Point& z) const {
-    for (int i = 0; i < n; ++i) z(i) += u(i) * (h * (2.0 - halved));
-  }
-  void generator(const Algebra& u, const Point&, Point& v) const { v = u; }
-  void bracket(const Algebra&, const Algebra&, Algebra& w) const { w = zero_algebra(); }
+  LevelSpace(const Sys* of, const Levels<Sys, true>* onto) : system(of), levels(onto) {}
   void project(Point& z) const {
     Vector<double, n> x;
     for (int i = 0; i < n; ++i) x(i) = RowRegister<S>::get(z(i), 0);
     if (!levels->project(*system, x)) x.setConstant(std::numeric_limits<double>::quiet_NaN());
     for (int i = 0; i < n; ++i) z(i) = S(x(i));
   }
-  Point zero_point() const { return Point::Constant(S(0.0)); }
-  Algebra zero_algebra() const { return zero_point(); }
 };
 
 template <class Sys> class ExtrapolatedPoissonSteps final : public PoissonIntegrator {
@@ -112,9 +105,14 @@ template <class Sys> class ExtrapolatedPoissonSteps final : public PoissonIntegr
   KeptStructure kept() const override {
     return {.bracket = KeptStructure::to_the_tolerance, .casimirs = 0, .energy = true};
   }
-  Eigen::MatrixXd slope(const std::vector<std::string>&) const override {
-    throw std::invalid_argument("steps of extrapolation have no derivative here");
+  Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const override {
+    const std::vector<typename HeldSteps<Sys>::Inner> inner = next_inner_steps();
+    return slope_by_parameters(
+        *system_, parameters, [&](const Sys& system) { return HeldSteps<Sys>(system, motion_.point(), inner); },
+        [](const HeldSteps<Sys>& held) { return held.end(); },
+        [](const HeldSteps<Sys>& held, const auto& members) { return held.slope(members); }, checked_);
   }
+  /// None is measured: it is what the tolerance lets it be.
   double poisson_defect() const override { return std::numeric_limits<double>::quiet_NaN(); }
   void serialize(NumberArchive& archive) override {
     motion_.serialize(archive);
@@ -122,18 +120,27 @@ template <class Sys> class ExtrapolatedPoissonSteps final : public PoissonIntegr
     archive(index_);
   }
 
+  /// The inner steps of the next step; none where it does not converge. Another motion makes them,
+  /// so that a run keeps no record.
+  std::vector<typename HeldSteps<Sys>::Inner> next_inner_steps() const {
+    std::vector<typename HeldSteps<Sys>::Inner> made;
+    // k rows evaluate the field k (k + 1) times.
+    Motion next = begun(motion_.point(), motion_.time(), [&](double h, int evaluations) {
+      made.push_back({h, int(std::sqrt(evaluations))});
+    });
+    next.go_back_to(motion_.place());
+    if (!next.advance_to(double(index_ + 1) * options_.step).converged()) made.clear();
+    return made;
+  }
+
  private:
-  /// pi dH, over the numbers of rows.
-  struct Field {
-    const Sys* system;
-    template <class Z> void operator()(const auto&, const Z& z, Z& u) const { u = system->velocity(z); }
-  };
-  using Motion = ExtrapolationIntegrator<LevelSpace<Sys>, Field>;
-  Motion begun(const X& start, double time) const {
+  using Motion = ExtrapolationIntegrator<LevelSpace<Sys>, PoissonField<Sys>>;
+  Motion begun(const X& start, double time, decltype(LieGroupControl::accepted) accepted = nullptr) const {
     LieGroupControl control{.tolerance = options_.tolerance};
     control.stop = options_.stop;
+    control.accepted = std::move(accepted);
     control.first_step = std::min(control.first_step, options_.step > 0 ? options_.step : 1);
-    return Motion(LevelSpace<Sys>{system_.get(), &levels_}, Field{system_.get()}, start, control, time);
+    return Motion(LevelSpace<Sys>(system_.get(), &levels_), PoissonField<Sys>{system_.get()}, start, control, time);
   }
 
   std::unique_ptr<const Sys> system_;
@@ -142,6 +149,7 @@ template <class Sys> class ExtrapolatedPoissonSteps final : public PoissonIntegr
   Motion motion_;
   typename Motion::Place before_ = motion_.place();
   long index_ = 0;
+  mutable std::vector<std::string> checked_;  ///< parameters whose slopes were compared
 };
 
 }  // namespace detail

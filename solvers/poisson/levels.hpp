@@ -8,20 +8,134 @@
 ///
 /// Along the gradients at the point, by Newton's method; Casimirs come first. A value whose gradient is zero or depends
 /// on those before it, as the energy's at a relative equilibrium, is left as it is. Returns false where a point is
-/// outside of the system's domain, or the values are not reached from it. Nothing is allocated, nothing throws.
+/// outside of the system's domain, or the values are not reached from it. Nothing is allocated but where it is said,
+/// nothing throws.
+///
+/// The derivative of that point is the one of its equations, by the implicit function theorem: from y along the
+/// gradients G(y) there,
+///
+///     z = y + sum_c l_c dC_c(y),    C(z) = L,
+///
+/// where `project` ends but for the third power of how far y was off, as all but the first of Newton's corrections are
+/// small; none of them is differentiated. With u = y + sum_c l_c dC_c(y), the l_c being held,
+///
+///     dz = du + G(y)^T dl,    G(z) G(y)^T dl = dL - G(z) du.
+///
+/// `slope_along` is that of u, `detail::AlongGradients` has the l_c and the rest.
 ///
 /// Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, 2006, IV.4.
 
+#include <lagroid/core/derivatives/directional.hpp>
+#include <lagroid/core/derivatives/varied_directions.hpp>
+#include <lagroid/core/matrices/decompositions.hpp>
 #include <lagroid/core/number_archive.hpp>
 #include <lagroid/core/poisson/gauss_collocation.hpp>
 #include <lagroid/core/poisson/poisson_system.hpp>
+
+#include <Eigen/Core>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace lagroid {
+
+namespace detail {
+
+/// A B.
+inline Eigen::MatrixXd multiplied(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd out(a.rows(), b.cols());
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    for (Eigen::Index j = 0; j < b.cols(); ++j) {
+      double sum = 0;
+      for (Eigen::Index k = 0; k < b.rows(); ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = sum;
+    }
+  return out;
+}
+/// Of f(x, members), from its own derivative, by x and members, and that of x.
+inline Eigen::MatrixXd chained(const Eigen::MatrixXd& of_f, const Eigen::MatrixXd& of_x) {
+  Eigen::MatrixXd out = multiplied(of_f, of_x);
+  for (Eigen::Index i = 0; i < out.rows(); ++i)
+    for (Eigen::Index j = of_x.rows(); j < out.cols(); ++j) out(i, j) += of_f(i, j);
+  return out;
+}
+
+/// The way from y along the gradients to levels, and its derivative. Derivatives have a column for each number of the
+/// point that a run begins from, and then for members of its system; gradients that `Levels` passes over move nothing.
+/// Sizes are known at run time and products written entry by entry, for the sake of compile times (docs/decisions/72).
+class AlongGradients {
+ public:
+  /// `moved` is z - y. One of which so much of its length is left beside those before it, or less, is passed over.
+  AlongGradients(const Eigen::MatrixXd& gradients, const Eigen::VectorXd& moved, double dependent)
+      : units_(gradients.cols(), gradients.rows()), scale_(Eigen::VectorXd::Zero(gradients.rows())) {
+    units_.setZero();
+    Eigen::MatrixXd directions = units_;
+    for (Eigen::Index c = 0; c < units_.cols(); ++c) take(gradients, c, dependent, directions);
+    Eigen::MatrixXd by(units_.cols(), 1);
+    for (Eigen::Index c = 0; c < by.rows(); ++c) by(c, 0) = product(units_, c, moved, 0);
+    by = solved(gradients, std::move(by));
+    multipliers_ = by.col(0);
+    for (Eigen::Index c = 0; c < by.rows(); ++c) multipliers_(c) *= scale_(c);
+  }
+
+  /// The l_c.
+  const Eigen::VectorXd& multipliers() const { return multipliers_; }
+  /// Of z, from those of u, of C by z and members, and of the levels.
+  Eigen::MatrixXd slope(const Eigen::MatrixXd& of_u, const Eigen::MatrixXd& of_values,
+                        const Eigen::MatrixXd& of_levels) const {
+    Eigen::MatrixXd missing = chained(of_values, of_u);
+    for (Eigen::Index c = 0; c < missing.rows(); ++c)
+      for (Eigen::Index j = 0; j < missing.cols(); ++j) missing(c, j) = scale_(c) * (of_levels(c, j) - missing(c, j));
+    Eigen::MatrixXd out = multiplied(units_, solved(of_values, std::move(missing)));
+    out += of_u;
+    return out;
+  }
+
+ private:
+  /// a_i . b_j, columns.
+  static double product(const Eigen::MatrixXd& a, Eigen::Index i, const Eigen::MatrixXd& b, Eigen::Index j) {
+    double sum = 0;
+    for (Eigen::Index k = 0; k < a.rows(); ++k) sum += a(k, i) * b(k, j);
+    return sum;
+  }
+  /// Gradient c of length one, and its direction beside those before it, unless it is passed over.
+  void take(const Eigen::MatrixXd& gradients, Eigen::Index c, double dependent, Eigen::MatrixXd& directions) {
+    const auto scaled = [](Eigen::MatrixXd& columns, Eigen::Index of) {
+      const double length = std::sqrt(product(columns, of, columns, of));
+      for (Eigen::Index i = 0; i < columns.rows(); ++i) columns(i, of) *= length > 0 ? 1 / length : 0;
+      return length;
+    };
+    for (Eigen::Index i = 0; i < units_.rows(); ++i) units_(i, c) = gradients(c, i);
+    const double length = scaled(units_, c);
+    for (Eigen::Index i = 0; i < units_.rows(); ++i) directions(i, c) = units_(i, c);
+    for (Eigen::Index k = 0; k < c; ++k) {
+      const double both = product(directions, k, units_, c);
+      for (Eigen::Index i = 0; i < units_.rows(); ++i) directions(i, c) -= both * directions(i, k);
+    }
+    const bool tells = scaled(directions, c) > dependent;
+    if (tells) scale_(c) = 1 / length;
+    for (Eigen::Index i = 0; !tells && i < units_.rows(); ++i) units_(i, c) = directions(i, c) = 0;
+  }
+  /// X of A X = B, A = scale G units, and 1 where gradients are passed over.
+  Eigen::MatrixXd solved(const Eigen::MatrixXd& of_values, const Eigen::MatrixXd& right) const {
+    Eigen::MatrixXd a = multiplied(of_values, units_);
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      for (Eigen::Index j = 0; j < a.cols(); ++j) a(i, j) *= scale_(i);
+      if (scale_(i) == 0) a(i, i) = 1;
+    }
+    return solve_regular(a, right);
+  }
+
+  Eigen::MatrixXd units_;  ///< gradients of length one, a column each; 0 where they are passed over
+  Eigen::VectorXd scale_;  ///< one over their lengths, or 0
+  Eigen::VectorXd multipliers_;
+};
+
+}  // namespace detail
 
 template <class Sys, bool WithEnergy> class Levels {
  public:
@@ -29,6 +143,9 @@ template <class Sys, bool WithEnergy> class Levels {
   static constexpr int casimirs = casimir_count<Sys>();
   static constexpr int count = casimirs + int(WithEnergy);
   using X = Vector<double, n>;
+  using Members = std::span<const double* const>;  ///< of the very system that is given
+  /// Of a gradient's length: where no more is left beside those before it, it says nothing.
+  static constexpr double dependent = 1e-4;
 
   Levels(const Sys& system, const X& start) : values_(measured<double>(system, start)) {}
 
@@ -61,7 +178,40 @@ template <class Sys, bool WithEnergy> class Levels {
   }
   void serialize(NumberArchive& archive) { archive(values_); }
 
+  /// Derivatives of the values by x and by members, a row each. Allocates.
+  static Matrix<double, count, Eigen::Dynamic> slope_of_values(const Sys& system, const X& x, Members members = {}) {
+    const auto values = [&]<class S>(const Vector<S, n>& at) {
+      const auto all = measured<S>(system, at);
+      Vector<S, count> out;
+      for (int c = 0; c < count; ++c) out(c) = all[std::size_t(c)];
+      return out;
+    };
+    return varied_jacobian<count>(values, x, members);
+  }
+  /// Those of x + sum_c l_c dC_c(x), l the multipliers. Allocates.
+  static Matrix<double, n, Eigen::Dynamic> slope_along(const Sys& system, const X& x,
+                                                       const Vector<double, count>& multipliers, Members members) {
+    const auto moved = [&](const Vector<VariedNumber, n>& at) {
+      Vector<VariedNumber, n> out = at;
+      if constexpr (WithEnergy) add(system.gradient(at), multipliers(casimirs), out);
+      if constexpr (casimirs > 0) {
+        const auto sum = [&](const Vector<Dual<VariedNumber>, n>& y) {
+          const auto values = system.casimirs(y);
+          Dual<VariedNumber> all = values(0) * multipliers(0);
+          for (int c = 1; c < casimirs; ++c) all += values(c) * multipliers(c);
+          return all;
+        };
+        add(gradient_of(sum, at), 1, out);
+      }
+      return out;
+    };
+    return varied_jacobian<n>(moved, x, members);
+  }
+
  private:
+  static void add(const Vector<VariedNumber, n>& a, double times, Vector<VariedNumber, n>& out) {
+    for (int i = 0; i < n; ++i) out(i) += a(i) * times;
+  }
   /// Energy last.
   template <class S> static std::array<S, std::size_t(count)> measured(const Sys& system, const Vector<S, n>& x) {
     std::array<S, std::size_t(count)> all;
@@ -76,7 +226,6 @@ template <class Sys, bool WithEnergy> class Levels {
   /// Returns how far those that say something were off.
   static double move(const Matrix<double, count, n>& slope, const Vector<double, count>& gap,
                      const Vector<double, count>& relative, X& x) {
-    constexpr double dependent = 1e-4;
     double farthest = 0;
     Matrix<double, count, n> directions;
     Vector<double, count> along;

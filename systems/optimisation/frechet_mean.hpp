@@ -12,10 +12,11 @@
 /// Requires a manifold that knows its exponential and logarithm. Points off it and weights that do not fit throw
 /// std::invalid_argument. (H. Karcher, Comm. Pure Appl. Math. 30 (1977) 509.)
 
-#include <lagroid/solvers/optimisation/objective.hpp>
+#include <lagroid/solvers/optimisation/sensitivity/parametric_objective.hpp>
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ namespace lagroid::optimisation {
 /// geodesically convex and the mean is one point; its Hessian there is at least one. Of two points it lies between
 /// them, exp_y1(w_2 log_y1 y_2), and of positive definite matrices that commute it is the exponential of the mean
 /// logarithm.
-class FrechetMean final : public Objective {
+class FrechetMean final : public ParametricObjective {
  public:
   /// Weights are made to sum to one; none: equal ones. Refers to the manifold. Throws std::invalid_argument for no
   /// points, points off the manifold, and weights that are not positive or not as many.
@@ -36,15 +37,26 @@ class FrechetMean final : public Objective {
   /// On manifolds with `is_hadamard`.
   bool convex() const override { return manifold_.is_hadamard(); }
   double evaluate(const Point& x, Vector& gradient) const override;
-  /// By central differences along the geodesic, whose lengths are the manifold's own.
+  /// -sum w_i of the covariant derivatives of log_x y_i; where the manifold does not know these (`logarithm_by_start`)
+  /// by central differences along the geodesic, whose lengths are the manifold's own.
   void hessian(const Point& x, const Vector& v, Vector& h) const override;
+  /// `weights`, as they were given, and `points`: the numbers of each point in a row, which is brought to the nearest
+  /// point as one of them changes. The slope by a point is not a number where the manifold does not know
+  /// `logarithm_by_end`.
+  std::vector<ParameterTable> parameters() const override;
+  double parameter(const ParameterEntry& which) const override;
+  double by_parameter(const ParameterEntry& which, const Point& x, Vector& gradient) const override;
+  std::unique_ptr<ParametricObjective> changed(const ParameterEntry& which, double by) const override;
 
  private:
   double riemannian(const Point& x, Vector& gradient) const;
+  bool closed_hessian(Vector& h) const;
+  void difference_hessian(double length, Vector& h) const;
 
   const Manifold& manifold_;
   std::vector<Point> points_;
   Eigen::VectorXd weights_;
+  double total_ = 1;  ///< of the weights as they were given
   mutable Point at_, moved_;
   mutable Vector log_, along_, change_, normal_;
 };

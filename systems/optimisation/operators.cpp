@@ -18,6 +18,21 @@ Eigen::VectorXd dense_eigenvalues(const SymmetricOperator& a) {
 
 }  // namespace
 
+double entry_of(const SymmetricOperator& a, Eigen::Index i, Eigen::Index j) {
+  const Eigen::MatrixXd unit = Eigen::VectorXd::Unit(a.size, j);
+  Eigen::MatrixXd column(a.size, 1);
+  a.apply(unit, column);
+  return column(i);
+}
+
+SymmetricOperator with_changed_entry(const SymmetricOperator& a, Eigen::Index i, Eigen::Index j, double by) {
+  return {a.size, [a, i, j, by](const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Ref<Eigen::MatrixXd> y) {
+            a.apply(x, y);
+            y.row(i) += by * x.row(j);
+            if (i != j) y.row(j) += by * x.row(i);
+          }};
+}
+
 std::pair<double, double> spectrum(const SymmetricOperator& a) {
   if (a.size <= small) {
     const Eigen::VectorXd all = dense_eigenvalues(a);

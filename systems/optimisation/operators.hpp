@@ -27,6 +27,10 @@ struct SymmetricOperator {
   }
 };
 
+/// The entry (i, j) of A, and A with it and (j, i) changed by so much.
+double entry_of(const SymmetricOperator& a, Eigen::Index i, Eigen::Index j);
+SymmetricOperator with_changed_entry(const SymmetricOperator& a, Eigen::Index i, Eigen::Index j, double by);
+
 /// Bounds of the spectrum that are 1e-4 of its width outside at most, by Lanczos' iteration (Spectra). Not finite where
 /// A is not. Throws std::runtime_error where A is not symmetric.
 std::pair<double, double> spectrum(const SymmetricOperator& a);

@@ -42,6 +42,35 @@ void Procrustes::hessian(const Point&, const Vector& v, Vector& h) const {
   Map(h.data(), a_.cols(), b_.cols()).noalias() = 2 * a_.transpose() * residual_;
 }
 
+std::vector<ParameterTable> Procrustes::parameters() const {
+  return {{"A", a_.rows(), a_.cols()}, {"B", b_.rows(), b_.cols()}};
+}
+
+double Procrustes::parameter(const ParameterEntry& which) const {
+  return which.table == 0 ? a_(which.row, which.column) : b_(which.row, which.column);
+}
+
+double Procrustes::by_parameter(const ParameterEntry& which, const Point& x, Vector& gradient) const {
+  const ConstMap point(x.data(), a_.cols(), b_.cols());
+  gradient.setZero(x.size());
+  Map slope(gradient.data(), a_.cols(), b_.cols());
+  // R = A X - B, f = |R|^2, D f = 2 A^T R.
+  const Eigen::RowVectorXd left = a_.row(which.row) * point - b_.row(which.row);
+  if (which.table == 1) {
+    slope.col(which.column) = -2 * a_.row(which.row).transpose();
+    return -2 * left(which.column);
+  }
+  slope.row(which.column) = 2 * left;
+  slope.noalias() += 2 * a_.row(which.row).transpose() * point.row(which.column);
+  return 2 * left.dot(point.row(which.column));
+}
+
+std::unique_ptr<ParametricObjective> Procrustes::changed(const ParameterEntry& which, double by) const {
+  auto out = std::make_unique<Procrustes>(*this);
+  (which.table == 0 ? out->a_ : out->b_)(which.row, which.column) += by;
+  return out;
+}
+
 Eigen::MatrixXd balanced_procrustes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int component) {
   auto [values, u, v] = singular_vectors(a.transpose() * b);
   const double sign = determinant_of(u * v.transpose());

@@ -36,6 +36,11 @@ class FlatSpace final : public Manifold {
     return true;
   }
   bool parallel_transport(const Point&, const Point&, Vector&) const override { return true; }
+  bool logarithm_by_end(const Point&, const Point&, Vector&) const override { return true; }
+  bool logarithm_by_start(const Point&, const Point&, Vector& v) const override {
+    v = -v;
+    return true;
+  }
   void hessian(const Point&, const Vector&, const Vector&, Vector&) const override {}
   double least_curvature() const override { return 0; }
   double diameter() const override { return std::numeric_limits<double>::infinity(); }

@@ -124,6 +124,23 @@ bool HyperbolicSpace::parallel_transport(const Point& from, const Point& to, Vec
   return true;
 }
 
+bool HyperbolicSpace::logarithm_by_end(const Point& x, const Point& y, Vector& v) const {
+  if (!logarithm(x, y, along_) || !parallel_transport(y, x, v)) return false;
+  const double distance = norm(x, along_);
+  stretch_across(*this, x, along_, distance > 0 ? distance / std::sinh(distance) : 1, v);
+  project(x, v);
+  return v.allFinite();
+}
+
+bool HyperbolicSpace::logarithm_by_start(const Point& x, const Point& y, Vector& v) const {
+  if (!logarithm(x, y, along_)) return false;
+  const double distance = norm(x, along_);
+  stretch_across(*this, x, along_, distance > 0 ? distance / std::tanh(distance) : 1, v);
+  v = -v;
+  project(x, v);
+  return v.allFinite();
+}
+
 void HyperbolicSpace::hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const {
   this->gradient(x, h);
   h += x.dot(gradient) * v;

@@ -50,6 +50,10 @@ class HyperbolicSpace final : public HadamardManifold {
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   /// v + (x + y) <log_x y, v> tanh(d / 2) / d.
   bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
+  /// Brought to x, and across the geodesic times d / sinh d.
+  bool logarithm_by_end(const Point& x, const Point& y, Vector& v) const override;
+  /// -v, and across the geodesic -v d coth d.
+  bool logarithm_by_start(const Point& x, const Point& y, Vector& v) const override;
   /// P_x J h + (x^T G) v, J = diag(-1, 1, ..., 1).
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 1 ? -1 : 0; }
@@ -58,7 +62,7 @@ class HyperbolicSpace final : public HadamardManifold {
   bool exponential(const Point& x, const Vector& v, Point& to) const override;
 
   Eigen::Index n_;
-  mutable Vector log_;
+  mutable Vector log_, along_;
 };
 
 }  // namespace lagroid::optimisation

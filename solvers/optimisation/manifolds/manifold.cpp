@@ -64,4 +64,10 @@ double zeta(const Manifold& manifold, double domain) {
   return zeta(curvature, diameter);
 }
 
+void stretch_across(const Manifold& manifold, const Point& x, const Vector& along, double factor, Vector& v) {
+  const double square = manifold.inner(x, along, along);
+  const double part = square > 0 ? manifold.inner(x, along, v) / square : 0;
+  v = factor * v + (1 - factor) * part * along;
+}
+
 }  // namespace lagroid::optimisation

@@ -96,6 +96,12 @@ class Manifold {
   /// v, tangent at `from`, along the geodesic of `logarithm` to `to`, with lengths and angles unchanged. False where it
   /// is not known in closed form or not unique; v may then be anything.
   virtual bool parallel_transport(const Point&, const Point&, Vector&) const { return false; }
+  /// How log_x y changes with y: in, a tangent vector at y; out, what it makes of the logarithm, tangent at x. False
+  /// where it is not known in closed form or not unique; v may then be anything.
+  virtual bool logarithm_by_end(const Point&, const Point&, Vector&) const { return false; }
+  /// How log_x y changes with x: in, a tangent vector at x; out, the covariant derivative along it, which is minus the
+  /// Hessian of d(x, y)^2 / 2 times v. False as above.
+  virtual bool logarithm_by_start(const Point&, const Point&, Vector&) const { return false; }
 
   /// The Hessian of the restriction of f to Q along v: in, `h` = D^2 f(x) v of the function on E; out, the tangent
   /// vector P_x h - (Weingarten map of the normal part of `gradient` = D f(x)) v, or what it is in the manifold's own
@@ -124,5 +130,9 @@ double zeta(double least_curvature, double diameter);
 /// The same with what the manifold knows; `domain` is the diameter of the domain, 0 for that of the manifold. Throws
 /// std::invalid_argument, with the remedy, where K < 0 and neither is finite.
 double zeta(const Manifold& manifold, double domain);
+
+/// v at x with what is orthogonal to `along` stretched by `factor`: along geodesics of a manifold of constant curvature
+/// neighbours draw apart so.
+void stretch_across(const Manifold& manifold, const Point& x, const Vector& along, double factor, Vector& v);
 
 }  // namespace lagroid::optimisation

@@ -110,17 +110,26 @@ bool PositiveDefinite::exponential(const Point& x, const Vector& v, Point& to) c
   return to.allFinite();
 }
 
-bool PositiveDefinite::logarithm(const Point& x, const Point& y, Vector& v) const {
+bool PositiveDefinite::logarithms(const Point& x, const Point& y, Eigen::VectorXd& s, Matrix& u) const {
   if (!factorise(x)) return false;
-  v = y - x;
-  reduce(v, one_);
+  reduce(y - x, one_);
   // Of matrices that are near the eigenvalues of X^-1 (Y - X) are small; of others those of X^-1 Y may be.
   constexpr double near = 0.5;
   const bool is_near = one_.norm() < near;
   if (!is_near) reduce(y, one_);
   if (!one_.allFinite()) return false;
-  auto [values, u] = symmetric_eigenvectors(one_);
-  for (double& value : values) value = is_near ? std::log1p(value) : std::log(value);
+  const auto found = symmetric_eigenvectors(one_);
+  s = found.values;
+  u = found.vectors;
+  for (double& value : s) value = is_near ? std::log1p(value) : std::log(value);
+  return s.allFinite();
+}
+
+bool PositiveDefinite::logarithm(const Point& x, const Point& y, Vector& v) const {
+  Eigen::VectorXd values;
+  Matrix u;
+  if (!logarithms(x, y, values, u)) return false;
+  v.resize(size());
   product_.noalias() = factor_.matrixL() * u;
   one_.noalias() = product_ * values.asDiagonal();
   Map(v.data(), n_, n_).noalias() = one_ * product_.transpose();
@@ -142,6 +151,43 @@ bool PositiveDefinite::parallel_transport(const Point& from, const Point& to, Ve
   Map(v.data(), n_, n_).noalias() = one_ * factor_.matrixU();
   project(to, v);
   return v.allFinite();
+}
+
+template <class Factor>
+bool PositiveDefinite::stretch_entries(const Point& x, const Point& y, const Factor& factor, Vector& v) const {
+  Eigen::VectorXd s;
+  Matrix u;
+  if (!logarithms(x, y, s, u)) return false;
+  reduce(v, one_);
+  product_.noalias() = u.transpose() * one_;
+  one_.noalias() = product_ * u;
+  for (Eigen::Index j = 0; j < n_; ++j)
+    for (Eigen::Index i = 0; i < n_; ++i) one_(i, j) *= factor(s(i), s(j));
+  product_.noalias() = factor_.matrixL() * u;
+  other_.noalias() = product_ * one_;
+  Map(v.data(), n_, n_).noalias() = other_ * product_.transpose();
+  project(x, v);
+  return v.allFinite();
+}
+
+bool PositiveDefinite::logarithm_by_end(const Point& x, const Point& y, Vector& v) const {
+  return stretch_entries(
+      x, y,
+      [](double a, double b) {
+        const double t = 0.5 * (a - b);
+        return std::exp(-0.5 * (a + b)) * (t != 0 ? t / std::sinh(t) : 1);
+      },
+      v);
+}
+
+bool PositiveDefinite::logarithm_by_start(const Point& x, const Point& y, Vector& v) const {
+  return stretch_entries(
+      x, y,
+      [](double a, double b) {
+        const double t = 0.5 * (a - b);
+        return t != 0 ? -t / std::tanh(t) : -1;
+      },
+      v);
 }
 
 void PositiveDefinite::hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const {

@@ -49,6 +49,11 @@ class PositiveDefinite final : public HadamardManifold {
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   /// E V E^T, E = (Y X^-1)^(1/2) = L (L^-1 Y L^-T)^(1/2) L^-1.
   bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
+  /// With L^-1 Y L^-T = U exp(s) U^T the entries of (L U)^-1 V (L U)^-T times (s_i - s_j) / (exp s_i - exp s_j): the
+  /// derivative of the matrix logarithm (Daleckii and Krein 1965).
+  bool logarithm_by_end(const Point& x, const Point& y, Vector& v) const override;
+  /// The same entries times -t coth t, t = (s_i - s_j) / 2.
+  bool logarithm_by_start(const Point& x, const Point& y, Vector& v) const override;
   /// X sym(h) X + sym(V sym(G) X).
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 1 ? -0.5 : 0; }
@@ -60,6 +65,10 @@ class PositiveDefinite final : public HadamardManifold {
 
   bool factorise(const Point& x) const;
   void reduce(const Vector& v, Matrix& out) const;
+  /// s and U with L^-1 Y L^-T = U exp(s) U^T. False where these are no numbers.
+  bool logarithms(const Point& x, const Point& y, Eigen::VectorXd& s, Matrix& u) const;
+  /// Entries of (L U)^-1 V (L U)^-T times factor(s_i, s_j).
+  template <class Factor> bool stretch_entries(const Point& x, const Point& y, const Factor& factor, Vector& v) const;
   void symmetric_part(const Vector& v, Matrix& out) const;
 
   Eigen::Index n_;

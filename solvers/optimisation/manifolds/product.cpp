@@ -142,6 +142,28 @@ bool ProductManifold::parallel_transport(const Point& from, const Point& to, Vec
   });
 }
 
+bool ProductManifold::logarithm_by_end(const Point& x, const Point& y, Vector& v) const {
+  return each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(x);
+    at.y = part(y);
+    at.z = part(v);
+    const bool found = factor.logarithm_by_end(at.x, at.y, at.z);
+    part(v) = at.z;
+    return found;
+  });
+}
+
+bool ProductManifold::logarithm_by_start(const Point& x, const Point& y, Vector& v) const {
+  return each([&](const Manifold& factor, Buffers& at, const auto& part) {
+    at.x = part(x);
+    at.y = part(y);
+    at.z = part(v);
+    const bool found = factor.logarithm_by_start(at.x, at.y, at.z);
+    part(v) = at.z;
+    return found;
+  });
+}
+
 bool ProductManifold::offers(ManifoldRetraction retraction) const {
   return std::all_of(factors_.begin(), factors_.end(), [&](const auto& factor) { return factor->offers(retraction); });
 }

@@ -45,6 +45,8 @@ class ProductManifold final : public Manifold {
   double reach(const Vector& v) const override;
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
+  bool logarithm_by_end(const Point& x, const Point& y, Vector& v) const override;
+  bool logarithm_by_start(const Point& x, const Point& y, Vector& v) const override;
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override;
   double diameter() const override;

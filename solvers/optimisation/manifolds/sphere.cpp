@@ -89,6 +89,21 @@ bool Sphere::parallel_transport(const Point& from, const Point& to, Vector& v) c
   return true;
 }
 
+bool Sphere::logarithm_by_end(const Point& x, const Point& y, Vector& v) const {
+  if (!logarithm(x, y, log_) || !parallel_transport(y, x, v)) return false;
+  const double angle = log_.norm();
+  stretch_across(*this, x, log_, angle > 0 ? angle / std::sin(angle) : 1, v);
+  return v.allFinite();
+}
+
+bool Sphere::logarithm_by_start(const Point& x, const Point& y, Vector& v) const {
+  if (!logarithm(x, y, log_)) return false;
+  const double angle = log_.norm();
+  stretch_across(*this, x, log_, angle > 0 ? angle / std::tan(angle) : 1, v);
+  v = -v;
+  return v.allFinite();
+}
+
 void Sphere::hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const {
   project(x, h);
   h -= x.dot(gradient) * v;

@@ -29,13 +29,17 @@ class Sphere final : public Manifold {
   bool logarithm(const Point& x, const Point& y, Vector& v) const override;
   /// v - (x + y) <y, v> / (1 + <x, y>). False between opposite points.
   bool parallel_transport(const Point& from, const Point& to, Vector& v) const override;
+  /// Brought to x, and across the geodesic times d / sin d.
+  bool logarithm_by_end(const Point& x, const Point& y, Vector& v) const override;
+  /// -v, and across the geodesic -v d cot d.
+  bool logarithm_by_start(const Point& x, const Point& y, Vector& v) const override;
   void hessian(const Point& x, const Vector& gradient, const Vector& v, Vector& h) const override;
   double least_curvature() const override { return n_ > 2 ? 1 : 0; }
   double diameter() const override;
 
  private:
   Eigen::Index n_;
-  mutable Vector moved_;
+  mutable Vector moved_, log_;
 };
 
 }  // namespace lagroid::optimisation

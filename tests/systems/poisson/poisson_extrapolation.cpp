@@ -157,6 +157,7 @@ TEST(PoissonExtrapolation, FailsWhereItCannotGo) {
   // x' = x^2, which is at infinity at t = 1.
   const auto motion = make_poisson_integrator(Bursting(), {1, 1}, {.method = "extrapolation", .step = 2});
   const auto before = motion->point();
+  EXPECT_FALSE(motion->slope({}).allFinite());
   EXPECT_FALSE(motion->advance().converged());
   EXPECT_EQ(motion->point(), before);
 }

@@ -1,4 +1,5 @@
-// Derivatives of steps on Poisson manifolds by their points and by parameters, and of runs.
+// Derivatives of steps on Poisson manifolds by their points and by parameters, and of runs; those of extrapolated steps
+// hold the inner steps that the tolerance asked for.
 #include <lagroid/solvers/poisson/poisson_integrators.hpp>
 #include <lagroid/solvers/sensitivity/linearised_poisson_motion.hpp>
 #include <lagroid/solvers/sensitivity/propagate.hpp>
@@ -6,10 +7,13 @@
 #include <lagroid/systems/poisson/fields.hpp>
 #include <lagroid/systems/poisson/lotka_volterra.hpp>
 #include <lagroid/systems/poisson/rotations.hpp>
+#include <lagroid/systems/poisson/tops.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +22,7 @@ namespace lagroid {
 
 // Those are in the library; here are only the test's own.
 LAGROID_POISSON_INTEGRATORS(extern template, EulerTop);
+LAGROID_POISSON_INTEGRATORS(extern template, HeavyTopBracket);
 LAGROID_POISSON_INTEGRATORS(extern template, Kirchhoff);
 LAGROID_POISSON_INTEGRATORS(extern template, LotkaVolterra);
 LAGROID_POISSON_INTEGRATORS(extern template, Sklyanin);
@@ -48,6 +53,14 @@ Eigen::VectorXd end_of(const Vector<double, Sys::dimension>& start, const Poisso
   return Eigen::Map<const Eigen::VectorXd>(y.data(), Sys::dimension);
 }
 
+/// How far a derivative is from differences of `end`, two widths extrapolated, over their size.
+template <class End> double missed_by(const Eigen::VectorXd& derivative, const End& end) {
+  const auto difference = [&](double by) -> Eigen::VectorXd { return (end(by) - end(-by)) / (2 * by); };
+  const Eigen::VectorXd found =
+      (16 * (4 * difference(1e-3) - difference(2e-3)) - (4 * difference(2e-3) - difference(4e-3))) / 45;
+  return (derivative - found).norm() / std::max(1.0, found.norm());
+}
+
 template <class Sys> Propagated propagated(const Vector<double, Sys::dimension>& start, const PoissonOptions& options) {
   const auto names = all_names<Sys>();
   LinearisedPoissonMotion motion(make_poisson_integrator(Sys(), start, options), names);
@@ -55,21 +68,25 @@ template <class Sys> Propagated propagated(const Vector<double, Sys::dimension>&
   return propagate_forward(motion, 5, Eigen::MatrixXd::Identity(count, count));
 }
 
+/// How far derivatives of a run are from extrapolated differences of runs, over these, column by column.
+template <class Sys>
+Eigen::ArrayXd missed_differences(const Vector<double, Sys::dimension>& start, const PoissonOptions& options) {
+  const Propagated run = propagated<Sys>(start, options);
+  EXPECT_TRUE(run.converged()) << run.message;
+  EXPECT_EQ(run.derivatives.cols(), Sys::dimension + Eigen::Index(all_names<Sys>().size()));
+  Eigen::ArrayXd missed(run.derivatives.cols());
+  for (int j = 0; j < run.derivatives.cols(); ++j) {
+    const auto end = [&](double by) { return end_of<Sys>(start, options, j, by); };
+    missed(j) = missed_by(run.derivatives.col(j), end);
+  }
+  return missed;
+}
+
 template <class Sys>
 void expect_differences(const Vector<double, Sys::dimension>& start, const PoissonOptions& options) {
   SCOPED_TRACE(options.method);
-  const Propagated run = propagated<Sys>(start, options);
-  ASSERT_TRUE(run.converged()) << run.message;
-  ASSERT_EQ(run.derivatives.cols(), Sys::dimension + Eigen::Index(all_names<Sys>().size()));
-  for (int j = 0; j < run.derivatives.cols(); ++j) {
-    const auto difference = [&](double by) -> Eigen::VectorXd {
-      return (end_of<Sys>(start, options, j, by) - end_of<Sys>(start, options, j, -by)) / (2 * by);
-    };
-    // Two widths, extrapolated.
-    const Eigen::VectorXd found =
-        (16 * (4 * difference(1e-3) - difference(2e-3)) - (4 * difference(2e-3) - difference(4e-3))) / 45;
-    EXPECT_LT((run.derivatives.col(j) - found).norm(), 2e-9 * std::max(1.0, found.norm())) << "column " << j;
-  }
+  const Eigen::ArrayXd missed = missed_differences<Sys>(start, options);
+  EXPECT_TRUE((missed < 2e-9).all()) << missed.transpose();
 }
 
 TEST(PoissonSlopes, AreWhatDifferencesOfRunsTendTo) {
@@ -141,8 +158,162 @@ TEST(PoissonSlopes, WhatHasNoDerivativeIsRefusedByName) {
     EXPECT_NE(std::string(refusal.what()).find("parameter rate carries no derivative"), std::string::npos);
   }
   EXPECT_THROW(make_poisson_integrator(LotkaVolterra(), {2, 0.5}, {})->slope({"mass"}), std::invalid_argument);
-  for (const char* method : {"projected-midpoint", "extrapolation"})
-    EXPECT_THROW(make_poisson_integrator(EulerTop(), {1, 0, 1}, {.method = method})->slope({}), std::invalid_argument);
+  EXPECT_THROW(make_poisson_integrator(EulerTop(), {1, 0, 1}, {.method = "projected-midpoint"})->slope({}),
+               std::invalid_argument);
+  const auto by_a_tolerance = make_poisson_integrator(Deaf(), {1, 0.2}, {.method = "extrapolation", .step = 0.1});
+  EXPECT_EQ(by_a_tolerance->slope({}).cols(), 2);
+  EXPECT_THROW(by_a_tolerance->slope({"rate"}), WithoutDerivative);
+}
+
+PoissonOptions extrapolation(double step, double tolerance) {
+  return {.method = "extrapolation", .step = step, .tolerance = tolerance};
+}
+constexpr double coarse = 1e-3;  ///< by which inner steps leave errors that the levels take back
+constexpr int nodes = 5;         ///< of the runs above
+
+/// A run by the inner steps of another, node after node, whatever it begins from.
+template <class Sys> struct ByHeldSteps {
+  using X = Vector<double, Sys::dimension>;
+  std::vector<std::vector<typename HeldSteps<Sys>::Inner>> inner;
+  std::vector<X> points;  ///< of the run that they are of
+
+  ByHeldSteps(const X& start, const PoissonOptions& options) {
+    detail::ExtrapolatedPoissonSteps<Sys> run(Sys(), start, options);
+    std::size_t made = 0;
+    for (int k = 0; k < nodes; ++k) {
+      const auto at = run.point();
+      points.push_back(Eigen::Map<const X>(at.data()));
+      inner.push_back(run.next_inner_steps());
+      made += inner.back().size();
+      EXPECT_TRUE(run.advance().converged());
+    }
+    EXPECT_GT(made, inner.size()) << "of one size each";
+  }
+  /// Of another system, where its numbers are those of Sys.
+  template <class Other = Sys> auto at_node(const Other& system, const X& x, int k) const {
+    std::vector<typename HeldSteps<Other>::Inner> steps;
+    for (const auto& each : inner[std::size_t(k)]) steps.push_back({each.size, each.rows});
+    return HeldSteps<Other>(system, x, steps);
+  }
+  /// The end of a run that differs in number j by so much, those of the start first.
+  Eigen::VectorXd end_of(X x, int j, double by) const {
+    Sys system;
+    if (j < Sys::dimension) {
+      x(j) += by;
+    } else {
+      const_cast<double&>(*all_parameters(system).members[std::size_t(j - Sys::dimension)]) += by;
+    }
+    for (int k = 0; k < nodes; ++k) x = at_node(system, x, k).end();
+    return x;
+  }
+  /// How far derivatives are from extrapolated differences.
+  double missed(const Eigen::MatrixXd& derivatives) const {
+    double most = 0;
+    for (int j = 0; j < derivatives.cols(); ++j)
+      detail::raise(most, missed_by(derivatives.col(j), [&](double by) { return end_of(points.front(), j, by); }));
+    return most;
+  }
+};
+
+template <class Sys>
+void expect_differences_by_held_steps(const Vector<double, Sys::dimension>& start, double step, double bound) {
+  for (const double tolerance : {coarse, 1e-6, 1e-12}) {
+    SCOPED_TRACE(tolerance);
+    const PoissonOptions options = extrapolation(step, tolerance);
+    const Propagated run = propagated<Sys>(start, options);
+    ASSERT_TRUE(run.converged()) << run.message;
+    EXPECT_LT(ByHeldSteps<Sys>(start, options).missed(run.derivatives), bound);
+  }
+}
+const Vector<double, 6> top = (Vector<double, 6>() << 0.3, 0.4, 1.2, 0, 0.6, 0.8).finished();
+
+TEST(ExtrapolatedPoissonSlopes, AreWhatDifferencesByTheSameInnerStepsTendTo) {
+  expect_differences_by_held_steps<LotkaVolterra>({2, 0.5}, 1.5, 1e-8);
+  expect_differences_by_held_steps<ThreeSpecies>({1, 1.9, 0.5}, 1, 1e-8);
+  expect_differences_by_held_steps<HeavyTopBracket>(top, 1, 1e-8);
+}
+
+/// The field of Sys, without levels that its steps could be taken back to.
+template <class Sys> struct Adrift : PoissonSystem<Adrift<Sys>, Sys::dimension> {
+  template <class S> Matrix<S, Sys::dimension, Sys::dimension> bivector(const Vector<S, Sys::dimension>& x) const {
+    return Sys().bivector(x);
+  }
+  template <class S> S hamiltonian(const Vector<S, Sys::dimension>&) const { return S(1.0); }
+  template <class S> Vector<S, Sys::dimension> velocity(const Vector<S, Sys::dimension>& x) const {
+    return Sys().velocity(x);
+  }
+};
+template <class Sys>
+double missed_without_projection(const Vector<double, Sys::dimension>& start, const PoissonOptions& options) {
+  const ByHeldSteps<Sys> held(start, options);
+  Eigen::MatrixXd product = Eigen::MatrixXd::Identity(Sys::dimension, Sys::dimension);
+  for (int k = 0; k < nodes; ++k)
+    product = (held.at_node(Adrift<Sys>(), held.points[std::size_t(k)], k).slope() * product).eval();
+  return held.missed(product);
+}
+
+TEST(ExtrapolatedPoissonSlopes, WithoutTheProjectionMissTheDifferences) {
+  EXPECT_GT(missed_without_projection<LotkaVolterra>({2, 0.5}, extrapolation(1.5, coarse)), 1e-5);
+  EXPECT_GT(missed_without_projection<HeavyTopBracket>(top, extrapolation(1, coarse)), 1e-5);
+}
+
+TEST(ExtrapolatedPoissonSlopes, MissDifferencesOfRunsByTheirOwnInnerStepsByTheTolerance) {
+  EXPECT_GT(missed_differences<LotkaVolterra>({2, 0.5}, extrapolation(1.5, coarse)).maxCoeff(), 1e-7);
+  expect_differences<LotkaVolterra>({2, 0.5}, extrapolation(1.5, 1e-13));
+  expect_differences<ThreeSpecies>({1, 1.9, 0.5}, extrapolation(0.5, 1e-13));
+  expect_differences<HeavyTopBracket>(top, extrapolation(0.5, 1e-13));
+  expect_differences<EulerTop>({0.8, 0.6, 1.1}, extrapolation(0.5, 1e-13));
+  expect_differences<Kirchhoff>({0.4, 0.2, -0.6, 0.7, -0.1, 0.5}, extrapolation(0.5, 1e-13));
+  expect_differences<Sklyanin>({0.7, 0.4, -0.5, 0.6}, extrapolation(0.5, 1e-13));
+}
+
+TEST(ExtrapolatedPoissonSlopes, LeaveEnergyAndCasimirsWhatTheyAreAtTheStart) {
+  const Vector<double, 3> start(1, 1.9, 0.5);
+  const Propagated run = propagated<ThreeSpecies>(start, extrapolation(1, coarse));
+  ASSERT_TRUE(run.converged());
+  const ThreeSpecies system;
+  const auto members = all_parameters(system).members;
+  using OnLevels = Levels<ThreeSpecies, true>;
+  const Eigen::MatrixXd at_start = OnLevels::slope_of_values(system, start, members);
+  const Eigen::MatrixXd at_end =
+      detail::chained(OnLevels::slope_of_values(system, run.values, members), run.derivatives);
+  EXPECT_LT((at_end - at_start).norm(), 1e-12 * run.growth);
+}
+
+TEST(ExtrapolatedPoissonSlopes, BackwardsAreThoseForward) {
+  const auto motion = [&] {
+    return LinearisedPoissonMotion(make_poisson_integrator(HeavyTopBracket(), top, extrapolation(0.5, 1e-9)),
+                                   {"inertia", "weight"});
+  };
+  auto one = motion(), other = motion();
+  ASSERT_EQ(one.parameters(), 6);
+  const Propagated forward = propagate_forward(one, 60, Eigen::MatrixXd::Identity(12, 12));
+  const Propagated backward = propagate_backward(other, 60);
+  ASSERT_TRUE(forward.converged() && backward.converged());
+  EXPECT_LT((forward.derivatives - backward.derivatives).norm(), 1e-12 * forward.derivatives.norm());
+}
+
+/// A run at rest has no error, whatever its inner steps, and these are as long as nodes are apart; its derivative,
+/// which turns, has one.
+TEST(ExtrapolatedPoissonSlopes, AtAnEquilibriumAreAsCoarseAsTheNodes) {
+  const auto missed = [](double step) {
+    LinearisedPoissonMotion motion(make_poisson_integrator(LotkaVolterra(), {1, 1}, extrapolation(step, 1e-12)), {});
+    const Propagated run = propagate_forward(motion, std::lround(6 / step), Eigen::MatrixXd::Identity(2, 2));
+    return (run.derivatives - Matrix<double, 2, 2>{{std::cos(6), -std::sin(6)}, {std::sin(6), std::cos(6)}}).norm();
+  };
+  EXPECT_GT(missed(1.5), 0.1);
+  EXPECT_LT(missed(0.1), 1e-4);
+}
+
+TEST(ExtrapolatedPoissonSlopes, LeaveTheRunAsItIs) {
+  const PoissonOptions options = extrapolation(0.7, 1e-10);
+  const auto seen = make_poisson_integrator(LotkaVolterra(), {2, 0.5}, options);
+  const auto alone = make_poisson_integrator(LotkaVolterra(), {2, 0.5}, options);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_TRUE(seen->slope({"growth"}).allFinite());
+    ASSERT_TRUE(seen->advance().converged() && alone->advance().converged());
+    ASSERT_EQ(seen->point(), alone->point());
+  }
 }
 
 }  // namespace
