@@ -17,6 +17,9 @@ constexpr double filter_violation = 1e-5;  // gamma_theta
 constexpr double filter_barrier = 1e-8;    // gamma_phi
 constexpr double armijo = 1e-8;            // eta_phi
 constexpr int most_corrections = 4;
+/// A slack may shrink to a thousandth in one step, as barrier parameters do, and no further: one that a step past its
+/// bound leaves at 1e-11 of what it was holds all later steps back.
+constexpr double most_to_boundary = 0.999;
 
 /// Whether the barrier function is to fall by more than the violation is worth.
 bool descends(double violation, double slope, double fraction) {
@@ -28,7 +31,7 @@ bool descends(double violation, double slope, double fraction) {
 bool InteriorPoint::Merit::finite() const { return std::isfinite(violation) && std::isfinite(barrier); }
 
 double InteriorPoint::fraction_to_boundary(const StageRows& at, const StageRows& along) const {
-  const double keep = std::max(0.99, 1 - barrier_);
+  const double keep = std::clamp(1 - barrier_, 0.99, most_to_boundary);
   double fraction = 1;
   for (std::size_t i = 0; i < at.numbers().size(); ++i)
     if (const double step = along.numbers()[i]; step < 0) fraction = std::min(fraction, -keep * at.numbers()[i] / step);

@@ -291,5 +291,15 @@ TEST_F(ControlResults, BoundsMayBeOnOneSide) {
       0);
 }
 
+/// A slack that one step leaves at nothing holds all later ones back, the more so the finer the grid.
+TEST_F(ControlResults, ThousandsOfStagesConvergeFromOneStart) {
+  for (const int stages : {9000, 14000}) {
+    const Outcome r =
+        run(scene("keep_out") + fmt::format(" --json --set solver.starts=1 --set horizon.stages={}", stages));
+    ASSERT_EQ(r.code, 0) << stages << r.err;
+    EXPECT_LT(json::parse(r.out).at("iterations").get<int>(), 40) << stages;
+  }
+}
+
 }  // namespace
 }  // namespace app_control_results_tests
