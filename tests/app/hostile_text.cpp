@@ -1,7 +1,6 @@
 // Names, keys and files by someone who means harm: none is obeyed by gnuplot, a browser or a terminal, and none ends
 // the program without a line.
 
-#define LAGROID_HAS_CHECK  // it looks whether there is one
 #include "command_line.hpp"
 
 #include <fmt/format.h>
@@ -111,9 +110,10 @@ class HostileText : public CommandLine {
   }
 
   /// With lagroid-check where that is built.
-  static vector<string> scene_commands() {
+  vector<string> scene_commands() {
     vector<string> out{"run ", "run --out out ", "study ", "study --list ", "study --out out ", "cite "};
-    if (fs::exists(fs::path(LAGROID_PROGRAM).parent_path() / "lagroid-check")) out.emplace_back("check ");
+    has_check_ = fs::exists(fs::path(LAGROID_PROGRAM).parent_path() / "lagroid-check");
+    if (has_check_) out.emplace_back("check ");
     return out;
   }
 };
