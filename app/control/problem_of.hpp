@@ -76,7 +76,9 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       out.outcomes = found.outcomes;
       out.iterations += found.iterations;
     } else {
-      out = described(posed, search(posed, keep_going));
+      const ControlSearch<Sys> found = search(posed, keep_going);
+      require_time(scene, posed, best_of(found).trajectory);
+      out = described(posed, found);
     }
     out.seconds = processor_time() - before;
     name_numbers(posed, out);
@@ -146,7 +148,6 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     if (read.loop) require_loop(scene);
     require_end(scene, posed, Ends::start);
     require_end(scene, posed, Ends::end);
-    require_bounded_time(scene, posed);
     return posed;
   }
   /// A loop begins anew at each state, from where an end with another momentum is out of reach.
@@ -189,24 +190,23 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
                                    key, can_cost ? "let time be the cost (parameters.cost = \"time\"), or " : "",
                                    in_phases ? "give the duration a range" : "leave out free"));
   }
-  /// Refuses a free duration that tends to zero.
-  static void require_bounded_time(const Section& scene, const Posed& posed) {
-    const ControlTask<Sys>& task = posed.task;
-    const std::vector<ControlPhase<Sys>> phases = phases_of(task, posed.scene.stages);
-    const auto fail = [&](std::size_t phase, const char* why) {
-      (posed.scene.phases.empty() ? scene.section("horizon", "") : posed.scene.phases[phase].table).fail("free", why);
-    };
-    for (std::size_t i = 0; i < phases.size(); ++i)
-      if (nothing_bounds_time(phases[i], task.boundary))
-        fail(i,
-             "no control has a bound or a cost, so that the shorter the duration the cheaper, to none at all: give "
-             "bounds, or leave out free");
-    const bool is_given = !task.start_condition && !task.end_condition;
-    if (phases.size() == 1 && phases[0].duration_is_free && !(phases[0].shortest > 0) && is_given &&
-        task.system.groupoid.tau_inverse(task.boundary).isZero(1e-12))
-      fail(0,
-           "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] a range or a "
-           "state on the way");
+  /// Refuses a free duration that went to nothing, where it can be told why.
+  static void require_time(const Section& scene, const Posed& posed, const ControlTrajectory<Sys>& found) {
+    constexpr double nothing = 1e-3;  // of the first guess
+    const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
+    for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i) {
+      const ControlPhase<Sys>& phase = phases[i];
+      if (!phase.duration_is_free || found.phases[i].step * double(phase.stages) > nothing * phase.duration) continue;
+      const Section table = posed.scene.phases.empty() ? scene.section("horizon", "") : posed.scene.phases[i].table;
+      if (has_unbounded_control(phase, posed.task.boundary))
+        table.fail("free",
+                   "a control without a bound or a cost makes the duration as short as one likes: give bounds, or "
+                   "leave out free");
+      if (phase.system.groupoid.tau_inverse(posed.task.boundary).isZero(1e-12))
+        table.fail("free",
+                   "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] "
+                   "a range or a state on the way");
+    }
   }
   template <class Bounded> static void set_bounds(Bounded& of, const ControlBounds& bounds) {
     for (int i = 0; i < int(bounds.size()); ++i) std::tie(of.lower(i), of.upper(i)) = bounds[std::size_t(i)];

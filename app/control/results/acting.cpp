@@ -17,13 +17,15 @@ template <class Mark> std::vector<StageRange> ranges(const ControlResult& found,
   return out;
 }
 
-/// A multiplier that is larger acts; those of an iterate say nothing.
+/// A multiplier that is larger acts; those of an iterate say nothing, nor do those that an interior point leaves of
+/// what is far from acting.
 double threshold(const ControlResult& found) {
+  constexpr double left_by_interior_points = 1e-9;
   if (!found.report.converged()) return HUGE_VAL;
   double largest = 0;
   for (const auto& row : found.inequality_rows)
     for (const double z : row) largest = std::max(largest, z);
-  return 1e-6 * largest;
+  return std::max(1e-6 * largest, found.crossover.crossed() ? 0 : left_by_interior_points);
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 /// and a little, mu / s_i^2, where it does not. Of a cost that is level along some direction, as where every motion
 /// costs the same, that little alone would make a minimum. It therefore stands in the matrix with its sign turned: a
 /// minimum that does not rest on it keeps its inertia, and vertices (bang-bang controls) keep pivots that are not zero.
-/// What may act (z_i / s_i above a millionth) keeps its sign.
+/// What may act (z_i / s_i above a millionth) keeps its sign. A yes is meant, a no is not always: where controls curve
+/// the cost by way of later nodes alone, as along a car's straight line, pivots are too small to tell.
 ///
 ///     const bool strict = is_strict_minimum(kkt, derivatives, multipliers, slacks, sigma, dual);
 ///

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace lagroid::optimisation {
@@ -63,6 +64,7 @@ class AtMinimum {
   };
   SlopeOf by_parameter(Eigen::Index k, const Point& x) const;
   double rate_of_change(const Vector& signs);
+  double relative_residual(const Eigen::VectorXd& residuals, const Vector& signs) const;
   void end(MinimumStatus status, std::string message);
 
   const Manifold& manifold_;
@@ -72,7 +74,7 @@ class AtMinimum {
   EvaluatedPoint state_;
   Vector left_;             ///< the step that Newton's method would take next; empty where there is none
   Eigen::MatrixXd slopes_;  ///< grad d_k f, a column for each parameter
-  double size_ = 0;         ///< of the largest of what they are parts of
+  Eigen::VectorXd sizes_;   ///< of what they are parts of
   MinimumDerivatives out_;
 };
 
@@ -165,6 +167,7 @@ AtMinimum::SlopeOf AtMinimum::by_parameter(Eigen::Index k, const Point& x) const
 void AtMinimum::differentiate_value() {
   const auto count = Eigen::Index(out_.parameters.size());
   slopes_.resize(state_.x.size(), count);
+  sizes_.resize(count);
   constexpr double eight_digits = 1e-8;
   TangentSolver solver(problem_, state_, options_.solver);
   Vector step;
@@ -173,14 +176,17 @@ void AtMinimum::differentiate_value() {
   for (Eigen::Index k = 0; k < count; ++k) {
     const auto [value, slope, size] = by_parameter(k, state_.x);
     slopes_.col(k) = slope;
-    size_ = std::max(size_, size);
+    sizes_(k) = size;
     const bool is_known = slope.allFinite();
     if (!out_.strict() && (!is_known || solver.solve(slope, step, eight_digits * size) != TangentSolveStatus::solved)) {
       ++without;
       continue;
     }
     out_.value_by(k) = value;
-    if (left_.size() > 0 && is_known) error = std::max(error, std::abs(manifold_.inner(state_.x, slope, left_)));
+    if (!out_.strict() || !is_known) continue;
+    const double of_rounding = manifold_.norm(state_.x, slope) * rounding() / out_.least_curvature;
+    const double of_left = left_.size() > 0 ? std::abs(manifold_.inner(state_.x, slope, left_)) : 0;
+    error = std::max({error, of_left, of_rounding});
   }
   out_.iterations += solver.iterations();
   if (without > 0)
@@ -215,12 +221,28 @@ double AtMinimum::rate_of_change(const Vector& signs) {
   return manifold_.norm(beside.x, after - before) / (length * size) + 1 / unit();
 }
 
+/// What residuals and rounding leave of the columns of a table, relative to its largest: of the worst table whose
+/// columns are more than that. Not a number where none is.
+double AtMinimum::relative_residual(const Eigen::VectorXd& residuals, const Vector& signs) const {
+  std::map<std::size_t, std::pair<double, double>> tables;  // the largest column of each, and what is left of it
+  for (Eigen::Index k = 0; k < signs.size(); ++k) {
+    if (signs(k) == 0) continue;
+    auto& [largest, left] = tables[out_.parameters[std::size_t(k)].table];
+    largest = std::max(largest, norm(out_.minimiser_by.col(k)));
+    left = std::max(left, (residuals(k) + precision * sizes_(k)) / out_.least_curvature);
+  }
+  double worst = no_number;
+  for (const auto& [table, of_it] : tables)
+    if (of_it.first > of_it.second) worst = std::fmax(worst, of_it.second / of_it.first);
+  return worst;
+}
+
 /// The columns. False where the equations of one are not solved.
 bool AtMinimum::differentiate_minimiser() {
   const Eigen::Index count = slopes_.cols();
   TangentSolver solver(problem_, state_, options_.solver);
   Vector column;
-  double residual = 0, largest = 0;
+  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(count);
   Eigen::Index unknown = 0;
   Vector signs = Vector::Zero(count);
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -228,7 +250,7 @@ bool AtMinimum::differentiate_minimiser() {
       ++unknown;
       continue;
     }
-    const TangentSolveStatus status = solver.solve(-slopes_.col(k), column, 0.1 * precision * size_);
+    const TangentSolveStatus status = solver.solve(-slopes_.col(k), column, 0.1 * precision * sizes_(k));
     if (status != TangentSolveStatus::solved) {
       out_.minimiser_by.setConstant(no_number);
       end(status == TangentSolveStatus::not_finite ? MinimumStatus::not_finite : MinimumStatus::iteration_limit,
@@ -237,8 +259,7 @@ bool AtMinimum::differentiate_minimiser() {
       return false;
     }
     out_.minimiser_by.col(k) = column;
-    residual = std::max(residual, solver.residual());
-    largest = std::max(largest, norm(column));
+    residuals(k) = solver.residual();
     signs(k) = k % 3 == 1 ? -1 : 1;
   }
   out_.iterations += solver.iterations();
@@ -247,7 +268,8 @@ bool AtMinimum::differentiate_minimiser() {
         "of {} of {} parameters no slope of d_k f is known: the minimiser has no derivative by "
         "them here",
         unknown, count);
-  if (!(largest > 0)) {
+  const double of_equations = relative_residual(residuals, signs);
+  if (!(of_equations >= 0)) {
     out_.digits = unknown < count ? 16 : 0;
     return true;
   }
@@ -257,7 +279,6 @@ bool AtMinimum::differentiate_minimiser() {
     if (signs(k) == 0) columns.col(k).setZero();
   const double rate = rate_of_change(signs);
   columns = found;
-  const double of_equations = (residual + precision * size_) / (out_.least_curvature * largest);
   out_.digits =
       digits_of(rate * out_.distance + of_equations + precision * out_.largest_curvature / out_.least_curvature);
   return true;
@@ -293,7 +314,9 @@ MinimumDerivatives AtMinimum::differentiate(const Point& x, const std::vector<Pa
     return told();
   }
   if (!classify()) return told();
-  if (out_.strict()) out_.distance = left_.size() > 0 ? norm(left_) : out_.gradient / out_.least_curvature;
+  if (out_.strict())
+    out_.distance = std::max(left_.size() > 0 ? norm(left_) : out_.gradient / out_.least_curvature,
+                             rounding() / out_.least_curvature);
   differentiate_value();
   if (out_.strict() && !options_.value_alone) differentiate_minimiser();
   return told();

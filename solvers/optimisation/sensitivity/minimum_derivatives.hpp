@@ -53,7 +53,8 @@ struct MinimumDerivatives {
   Point x;              ///< as Newton's method left it
   double value = std::numeric_limits<double>::quiet_NaN();
   double gradient = std::numeric_limits<double>::quiet_NaN();  ///< |grad f| that is left there
-  /// |Hess^{-1} grad f|: how far x* is from there, to first order. Of a strict minimum.
+  /// |Hess^{-1} grad f|: how far x* is from there, to first order, and at least what rounding leaves of grad f over the
+  /// least curvature. Of a strict minimum.
   double distance = std::numeric_limits<double>::quiet_NaN();
   double least_curvature = std::numeric_limits<double>::quiet_NaN();
   double largest_curvature = std::numeric_limits<double>::quiet_NaN();
@@ -61,8 +62,9 @@ struct MinimumDerivatives {
   Eigen::RowVectorXd value_by;   ///< not a number where the least value has no derivative
   Eigen::MatrixXd minimiser_by;  ///< a column in E for each; not numbers unless the minimum is strict, and by
                                  ///< parameters of which no slope of d_k f is known
-  /// Of the largest column, by what is left: the distance times the rate at which columns change along it (third
-  /// derivatives of f), residuals over the least curvature, and the rounding of a Hessian of this condition.
+  /// Of the largest column of a table, the worst, by what is left: the distance times the rate at which columns change
+  /// along it (third derivatives of f), residuals over the least curvature, and the rounding of a Hessian of this
+  /// condition.
   double digits = 0;
   double value_digits =
       0;  ///< of the largest derivative of the value: the slope of d_k f over the distance, and rounding
