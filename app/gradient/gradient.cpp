@@ -69,19 +69,16 @@ void require_family(const Section& scene) {
     scene.fail(keys::system, fmt::format("this program has no derivatives of runs of \"{}\"", system));
 }
 
-/// Finds the scene's subject and calls use(subject, scene); what cannot be done is said in one line.
+/// Finds the scene's subject and calls use(subject); what cannot be done is said in one line.
 template <class Use>
-int with_subject(const SceneOptions& options, const std::vector<AskGradient>& subjects, const Use& use) {
-  const Section scene = read_scene(options.scene, options.overrides);
+int with_subject(const SceneOptions& options, const Section& scene, const std::vector<AskGradient>& subjects,
+                 const Use& use) {
   require_family(scene);
-  if (scene.has(keys::optimisation))
-    scene.fail(keys::optimisation,
-               "is no motion that measured columns could tell of; lagroid gradient has derivatives of its minimum");
   for (const AskGradient ask : subjects) {
     try {
       const auto subject = ask(scene);
       if (!subject) continue;
-      return use(*subject, scene);
+      return use(*subject);
     } catch (const GradientRefused& refusal) {
       return refuse(options.json, exit_bad_input, "invalid_command_line", refusal.what());
     } catch (const DataError& refusal) {
@@ -112,9 +109,9 @@ int gradient_of_optimum(const GradientOptions& options, const Section& scene, Se
 }
 
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects, ServeMinimum minima) {
-  if (const Section scene = read_scene(options.scene, options.overrides); scene.has(keys::optimisation))
-    return gradient_of_optimum(options, scene, minima);
-  return with_subject(options, subjects, [&](const GradientSubject& plain, const Section&) {
+  const Section scene = read_scene(options.scene, options.overrides);
+  if (scene.has(keys::optimisation)) return gradient_of_optimum(options, scene, minima);
+  return with_subject(options, scene, subjects, [&](const GradientSubject& plain) {
     const auto more = [&](const GradientSubject& of) { return with_columns(of, named_texts(options.columns)); };
     if (!options.deviations.empty() || !options.covariance.empty()) {
       if (plain.cost) throw GradientRefused("errors are carried along runs; a boundary value has a gradient alone");
@@ -142,7 +139,11 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
 }
 
 int fit_of_scene(const FitCommandOptions& options, const std::vector<AskGradient>& subjects) {
-  return with_subject(options, subjects, [&](const GradientSubject& plain, const Section&) {
+  const Section scene = read_scene(options.scene, options.overrides);
+  if (scene.has(keys::optimisation))
+    scene.fail(keys::optimisation,
+               "is no motion that measured columns could tell of; lagroid gradient has derivatives of its minimum");
+  return with_subject(options, scene, subjects, [&](const GradientSubject& plain) {
     require_place_of_residuals(options);
     const GradientSubject subject = with_columns(plain, named_texts(options.columns));
     const Fit fit = fit_scene(subject, options.data, fit_options(options));
@@ -182,15 +183,13 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
          "final.NAME, node.K.NAME, integral.NAME or, of events, event.NAME.K.COLUMN, separated by commas: "
          "position, momentum, configuration, of Poisson systems state, energy, Casimirs, a column of them, the time t "
          "of an event or of steps that vary; events: the times of all; of a boundary value cost; of a scene of "
-         "optimize "
-         "minimum and minimiser (default: all at the end, cost, minimum)")
+         "optimize minimum and minimiser (default: all at the end, cost, minimum)")
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_option(
          "--wrt", options.by,
          "initial.NAME, of a boundary value boundary.start or boundary.end, or parameters.NAME, of a minimum data.NAME "
-         "too, separated by commas "
-         "(default: all)")
+         "too, separated by commas (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
   add_columns_option(app, options.columns);

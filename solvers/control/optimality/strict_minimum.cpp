@@ -1,4 +1,4 @@
-#include "strict_minimum.hpp"
+#include <lagroid/solvers/control/optimality/strict_minimum.hpp>
 
 #include <algorithm>
 #include <cstddef>

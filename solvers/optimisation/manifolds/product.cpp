@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -120,48 +121,35 @@ void ProductManifold::differential(const Point& x, Vector& gradient) const {
   });
 }
 
-void ProductManifold::transport(const Point& from, const Point& to, Vector& v) const {
-  each([&](const Manifold& factor, Buffers& at, const auto& part) {
+template <class Change>
+bool ProductManifold::change_between(const Point& from, const Point& to, Vector& v, const Change& change) const {
+  return each([&](const Manifold& factor, Buffers& at, const auto& part) {
     at.x = part(from);
     at.y = part(to);
     at.z = part(v);
-    factor.transport(at.x, at.y, at.z);
+    const bool found = change(factor, at.x, at.y, at.z);
     part(v) = at.z;
+    return found;
+  });
+}
+
+void ProductManifold::transport(const Point& from, const Point& to, Vector& v) const {
+  change_between(from, to, v, [](const Manifold& factor, const Point& x, const Point& y, Vector& part) {
+    factor.transport(x, y, part);
     return true;
   });
 }
 
 bool ProductManifold::parallel_transport(const Point& from, const Point& to, Vector& v) const {
-  return each([&](const Manifold& factor, Buffers& at, const auto& part) {
-    at.x = part(from);
-    at.y = part(to);
-    at.z = part(v);
-    const bool found = factor.parallel_transport(at.x, at.y, at.z);
-    part(v) = at.z;
-    return found;
-  });
+  return change_between(from, to, v, std::mem_fn(&Manifold::parallel_transport));
 }
 
 bool ProductManifold::logarithm_by_end(const Point& x, const Point& y, Vector& v) const {
-  return each([&](const Manifold& factor, Buffers& at, const auto& part) {
-    at.x = part(x);
-    at.y = part(y);
-    at.z = part(v);
-    const bool found = factor.logarithm_by_end(at.x, at.y, at.z);
-    part(v) = at.z;
-    return found;
-  });
+  return change_between(x, y, v, std::mem_fn(&Manifold::logarithm_by_end));
 }
 
 bool ProductManifold::logarithm_by_start(const Point& x, const Point& y, Vector& v) const {
-  return each([&](const Manifold& factor, Buffers& at, const auto& part) {
-    at.x = part(x);
-    at.y = part(y);
-    at.z = part(v);
-    const bool found = factor.logarithm_by_start(at.x, at.y, at.z);
-    part(v) = at.z;
-    return found;
-  });
+  return change_between(x, y, v, std::mem_fn(&Manifold::logarithm_by_start));
 }
 
 bool ProductManifold::offers(ManifoldRetraction retraction) const {

@@ -55,6 +55,9 @@ class ProductManifold final : public Manifold {
 
  private:
   template <class F> bool each(const F& f) const;
+  /// v between two points, factor by factor, as change(factor, from, to, v) makes it of the parts.
+  template <class Change>
+  bool change_between(const Point& from, const Point& to, Vector& v, const Change& change) const;
 
   std::vector<std::unique_ptr<Manifold>> factors_;
   std::vector<Eigen::Index> first_;
