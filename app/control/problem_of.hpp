@@ -160,6 +160,10 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
                              Sys::states[std::size_t(first - Sys::conserved.begin())]));
     }
   }
+  /// Where the scene has the duration of a phase.
+  static Section table_of_duration(const Section& scene, const Posed& posed, std::size_t phase) {
+    return posed.scene.phases.empty() ? scene.section("horizon", "") : posed.scene.phases[phase].table;
+  }
   enum class Ends { start, end };
   /// What is wrong with an end, before anything is solved: an inequality that does not hold there, or that the motion
   /// can wait there for as long as it likes.
@@ -183,9 +187,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     const std::vector<Key> keys = parameters();
     const bool can_cost = std::any_of(keys.begin(), keys.end(), [](const Key& each) { return each.name == "cost"; });
     const bool in_phases = !posed.scene.phases.empty();
-    const Section table = !in_phases ? scene.section("horizon", "")
-                          : at_start ? posed.scene.phases.front().table
-                                     : posed.scene.phases.back().table;
+    const Section table = table_of_duration(scene, posed, at_start ? 0 : phases.size() - 1);
     table.fail("free", fmt::format("the motion can wait at its {} at no cost, so that no duration is the best: {}{}",
                                    key, can_cost ? "let time be the cost (parameters.cost = \"time\"), or " : "",
                                    in_phases ? "give the duration a range" : "leave out free"));
@@ -197,7 +199,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i) {
       const ControlPhase<Sys>& phase = phases[i];
       if (!phase.duration_is_free || found.phases[i].step * double(phase.stages) > nothing * phase.duration) continue;
-      const Section table = posed.scene.phases.empty() ? scene.section("horizon", "") : posed.scene.phases[i].table;
+      const Section table = table_of_duration(scene, posed, i);
       if (has_unbounded_control(phase, posed.task.boundary))
         table.fail("free",
                    "a control without a bound or a cost makes the duration as short as one likes: give bounds, or "

@@ -50,62 +50,44 @@ J with_directions_at(const Few& x, const std::array<int, Blocks>& at) {
   return out;
 }
 
-/// An arrow over J, of one over fewer directions.
-template <class J, class G, class Arrow, std::size_t Blocks>
-auto widened_arrow(const G& groupoid, const Arrow& arrow, const std::array<int, Blocks>& at) {
-  const auto few = groupoid.coordinates_of_arrow(arrow);
+/// g displaced at its last `Blocks` ends, along the infinitesimals from `at` on.
+template <class J, std::size_t Blocks, class G>
+auto displaced_at(const G& groupoid, const ArrowOf<G>& g, const std::array<int, Blocks>& at) {
+  constexpr int n = G::dimension;
+  constexpr int before_target = (int(Blocks) - 1) * n;
+  using Few = typename WithDirections<J, before_target + n>::Type;
+  Vector<Few, n> a;
+  Vector<Few, n> b;
+  for (int i = 0; i < n; ++i) {
+    a(i) = Blocks == 2 ? Few::variable(0, i) : Few(0.0);
+    b(i) = Few::variable(0, before_target + i);
+  }
+  const auto few = groupoid.coordinates_of_arrow(groupoid.translate(a, groupoid.template cast<Few>(g), b));
   Vector<J, G::arrow_coordinate_count()> x;
-  for (int i = 0; i < x.size(); ++i) x(i) = with_directions_at<J, G::dimension>(few(i), at);
+  for (int i = 0; i < x.size(); ++i) x(i) = with_directions_at<J, n>(few(i), at);
   return groupoid.template arrow_at<J>(x);
+}
+template <class J, std::size_t Blocks, class... Gs>
+auto displaced_at(const Product<Gs...>& groupoid, const ArrowOf<Product<Gs...>>& g, std::array<int, Blocks> at) {
+  const auto displaced = [&]<class F, class A>(const F& factor, const A& arrow) {
+    const auto here = at;
+    for (int& place : at) place += F::dimension;
+    return displaced_at<J, Blocks>(factor, arrow, here);
+  };
+  return [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return ArrowOf<Product<Gs...>, J>{displaced(std::get<I>(groupoid.factor), std::get<I>(g))...};
+  }
+  (std::index_sequence_for<Gs...>());
 }
 
 }  // namespace detail
 
 template <class J, class G> auto displaced_jet(const G& groupoid, const ArrowOf<G>& g, int source, int target) {
-  constexpr int n = G::dimension;
-  using Few = typename detail::WithDirections<J, 2 * n>::Type;
-  Vector<Few, n> a;
-  Vector<Few, n> b;
-  for (int i = 0; i < n; ++i) {
-    a(i) = Few::variable(0, i);
-    b(i) = Few::variable(0, n + i);
-  }
-  return detail::widened_arrow<J>(groupoid, groupoid.translate(a, groupoid.template cast<Few>(g), b),
-                                  std::array{source, target});
+  return detail::displaced_at<J, 2>(groupoid, g, {source, target});
 }
-template <class J, class... Gs>
-auto displaced_jet(const Product<Gs...>& groupoid, const ArrowOf<Product<Gs...>>& g, int source, int target) {
-  int at = 0;
-  const auto displaced = [&]<class F, class A>(const F& factor, const A& arrow) {
-    const int begin = std::exchange(at, at + F::dimension);
-    return displaced_jet<J>(factor, arrow, source + begin, target + begin);
-  };
-  return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return ArrowOf<Product<Gs...>, J>{displaced(std::get<I>(groupoid.factor), std::get<I>(g))...};
-  }
-  (std::index_sequence_for<Gs...>());
-}
-
 /// g tau(b) alone, b_i the infinitesimal Target + i.
 template <class J, class G> auto displaced_end_jet(const G& groupoid, const ArrowOf<G>& g, int target) {
-  constexpr int n = G::dimension;
-  using Few = typename detail::WithDirections<J, n>::Type;
-  const Vector<Few, n> zero = Vector<Few, n>::Constant(Few(0.0));
-  Vector<Few, n> b;
-  for (int i = 0; i < n; ++i) b(i) = Few::variable(0, i);
-  return detail::widened_arrow<J>(groupoid, groupoid.translate(zero, groupoid.template cast<Few>(g), b),
-                                  std::array{target});
-}
-template <class J, class... Gs>
-auto displaced_end_jet(const Product<Gs...>& groupoid, const ArrowOf<Product<Gs...>>& g, int target) {
-  int at = target;
-  const auto displaced = [&]<class F, class A>(const F& factor, const A& arrow) {
-    return displaced_end_jet<J>(factor, arrow, std::exchange(at, at + F::dimension));
-  };
-  return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return ArrowOf<Product<Gs...>, J>{displaced(std::get<I>(groupoid.factor), std::get<I>(g))...};
-  }
-  (std::index_sequence_for<Gs...>());
+  return detail::displaced_at<J, 1>(groupoid, g, {target});
 }
 
 }  // namespace lagroid
