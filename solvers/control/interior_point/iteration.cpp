@@ -81,7 +81,8 @@ double InteriorPoint::scaled_error(double barrier) {
   // Multipliers of what nothing free can change may be as large as they like: they are no part of the gradient.
   const double mean = std::min((sum + sum_of_bounds) / (double(kkt_.equalities()) + bounds), rounding_.largest_term());
   const double scale = std::max(100.0, mean) / 100;
-  const double scale_of_bounds = bounds > 0 ? std::max(100.0, sum_of_bounds / bounds) / 100 : 1;
+  const double mean_of_bounds = bounds > 0 ? std::min(sum_of_bounds / bounds, rounding_.largest_term()) : 0;
+  const double scale_of_bounds = std::max(100.0, mean_of_bounds) / 100;
   return std::max({largest_entry(gradient_, rounding_) / scale, violation, complementarity / scale_of_bounds});
 }
 
@@ -220,7 +221,7 @@ bool InteriorPoint::direction() {
   for (long k = 0; k < sizes_.stages; ++k)
     for (int i = 0; i < sizes_.inequality; ++i) {
       sigma_[k][i] = multipliers_[k][i] / slacks_[k][i];
-      gap_[k][i] = values_.inequality[k][i] + slacks_[k][i];
+      gap_[k][i] = above(rounding_.inequality[k][i], values_.inequality[k][i] + slacks_[k][i]);
     }
   equality_ = values_.equality;
   kkt_.assemble(derivatives_, sigma_);

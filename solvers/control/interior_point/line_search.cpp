@@ -57,8 +57,10 @@ InteriorPoint::Merit InteriorPoint::try_step(double fraction) {
   transcription_.values(trial_);
   for (long k = 0; k < sizes_.stages; ++k)
     for (int i = 0; i < sizes_.inequality; ++i)
-      // A slack below the constraint's own distance only adds to violation and barrier.
-      trial_slacks_[k][i] = std::max(slacks_[k][i] + fraction * slack_step_[k][i], -trial_.inequality[k][i]);
+      // A slack below the constraint's own distance only adds to violation and barrier; one below its rounding adds to
+      // the barrier alone, without end where nothing free can change the constraint.
+      trial_slacks_[k][i] = std::max(
+          {slacks_[k][i] + fraction * slack_step_[k][i], -trial_.inequality[k][i], rounding_.inequality[k][i]});
   return merit(trial_, trial_slacks_);
 }
 
