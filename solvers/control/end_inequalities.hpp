@@ -2,8 +2,7 @@
 /// Derivatives of inequalities that depend on where an arrow ends and on the controls, gamma(beta(g), u): along these
 /// n + c directions alone, of the 2n + c + 1 of a stage. A second-order jet costs the square of its directions.
 ///
-///     struct SatelliteTurn ... {
-///       static constexpr bool inequalities_of_end = true;  // neither of the arrow's source nor of h
+///     static constexpr bool inequalities_of_end = true;  // a system's: neither of the arrow's source nor of h
 ///
 /// What a system says so of that is not true is found by `laws::transcription_laws`, which compares with differences.
 /// Nothing throws.
