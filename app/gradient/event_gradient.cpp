@@ -270,7 +270,10 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
     compare_with_differences(
         subject, columns, out,
         [&](const std::vector<Nudge>& nudges) { return values_through_events(subject, out, nudges); },
-        {sizes, out.growth, subject.tolerance});
+        {.where_none = "end early or have other events",
+         .sizes = sizes,
+         .growth = out.growth,
+         .tolerance = subject.tolerance});
   return out;
 }
 

@@ -25,8 +25,8 @@ namespace {
 
 struct GradientOptions : SceneOptions {
   std::vector<std::string> columns;
-  std::vector<std::string> of{"final"};
-  std::vector<std::string> by{"initial", "parameters"};
+  std::vector<std::string> of;  ///< empty: all at the end, the cost, the minimum
+  std::vector<std::string> by;  ///< empty: all
   bool check = false;
   std::vector<std::string> deviations;
   std::string covariance;
@@ -102,10 +102,26 @@ int gradient_of_optimum(const GradientOptions& options, const Section& scene, Se
     if (is_given)
       return refuse(options.json, exit_bad_input, "invalid_command_line",
                     fmt::format("{}: is of runs; of a minimum there are derivatives alone", option));
-  MinimumRequest request{options.scene, options.of, options.by, options.check, options.json};
-  if (request.of == GradientOptions{}.of) request.of.clear();
-  if (request.by == GradientOptions{}.by) request.by.clear();
-  return minima(scene, request);
+  return minima(scene, {options.scene, options.of, options.by, options.check, options.json});
+}
+
+/// Of words of --of and --wrt, which name something.
+CLI::Validator named() {
+  return {[](const std::string& word) {
+            return std::string(word.empty() ? "an empty name; leave the option out for all that there is" : "");
+          },
+          ""};
+}
+
+std::vector<std::string> rows_asked(const GradientOptions& options, const GradientSubject& subject) {
+  if (!options.of.empty()) return options.of;
+  return {subject.cost ? "cost" : "final"};
+}
+std::vector<std::string> columns_asked(const GradientOptions& options, const GradientSubject& subject) {
+  if (!options.by.empty()) return options.by;
+  std::vector<std::string> out{subject.cost ? "boundary" : "initial"};
+  if (!subject.parameters.empty() || !subject.refused.empty()) out.emplace_back("parameters");
+  return out;
 }
 
 int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradient>& subjects, ServeMinimum minima) {
@@ -118,20 +134,14 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
       const InputErrors errors = options.covariance.empty() ? independent_errors(plain, options.deviations)
                                                             : fitted_errors(options.covariance);
       const GradientSubject subject = more(moved_to(plain, errors));
-      Uncertainty found = uncertainty_of(subject, options.of, errors, options.draws);
+      Uncertainty found = uncertainty_of(subject, rows_asked(options, subject), errors, options.draws);
       add_notes(subject, found.table);
       return report(options, found, found.table.failure);
     }
     if (options.draws.count > 0) throw GradientRefused("--draws are of errors: give --deviations or --covariance");
     const GradientSubject subject = more(plain);
-    std::vector<std::string> by = options.by;
-    std::vector<std::string> of = options.of;
-    if (subject.cost && of == GradientOptions{}.of) of = {"cost"};
-    if (by == GradientOptions{}.by) {
-      if (subject.cost) by.front() = "boundary";
-      if (subject.parameters.empty() && subject.refused.empty()) by.pop_back();
-    }
-    GradientTable table = differentiate(subject, of, by, options.check);
+    GradientTable table =
+        differentiate(subject, rows_asked(options, subject), columns_asked(options, subject), options.check);
     add_notes(subject, table);
     const int code = report(options, table, table.failure);
     return code == 0 && !table.contradicted.empty() ? exit_failed : code;
@@ -185,12 +195,14 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
          "of an event or of steps that vary; events: the times of all; of a boundary value cost; of a scene of "
          "optimize minimum and minimiser (default: all at the end, cost, minimum)")
       ->delimiter(',')
+      ->check(named())
       ->allow_extra_args(false);
   app.add_option(
          "--wrt", options.by,
          "initial.NAME, of a boundary value boundary.start or boundary.end, or parameters.NAME, of a minimum data.NAME "
          "too, separated by commas (default: all)")
       ->delimiter(',')
+      ->check(named())
       ->allow_extra_args(false);
   add_columns_option(app, options.columns);
   auto* deviations =

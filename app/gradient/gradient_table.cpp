@@ -316,7 +316,7 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
   if (check && out.failure.empty())
     compare_with_differences(subject, columns, out,
                              [&](const std::vector<Nudge>& nudges) { return values_of(subject, out, nudges); },
-                             {growth.sizes(), out.growth, subject.tolerance});
+                             {.sizes = growth.sizes(), .growth = out.growth, .tolerance = subject.tolerance});
   return out;
 }
 

@@ -37,7 +37,8 @@ GradientTable differentiate_cost(const GradientSubject& subject, const std::vect
   set_growth(out, 1);
   if (check)
     compare_with_differences(subject, columns, out,
-                             [&](const std::vector<Nudge>& nudges) { return as_vector(found.again(nudges)); }, {});
+                             [&](const std::vector<Nudge>& nudges) { return as_vector(found.again(nudges)); },
+                             {.what = "paths", .where_none = "are not found"});
   return out;
 }
 

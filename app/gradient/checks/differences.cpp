@@ -17,6 +17,7 @@ namespace lagroid::app {
 namespace {
 
 using ValuesAt = std::function<std::optional<Eigen::VectorXd>(double)>;
+using Booleans = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
 /// The unit of what a row shows.
 std::string unit_of_row(const GradientSubject& subject, const GradientTable& table, std::size_t row) {
@@ -50,26 +51,27 @@ struct Compared {
   Eigen::ArrayXd difference = {};  ///< those that agree best
   Eigen::ArrayXd off = {};         ///< by how much these do not
   Eigen::ArrayXd error = {};       ///< to which the best known are known
-  Eigen::Array<bool, Eigen::Dynamic, 1> agrees = {};
-  Eigen::Array<bool, Eigen::Dynamic, 1> told_otherwise = {};  ///< by some that are known
+  Booleans agrees = {};
+  Booleans told_otherwise = {};  ///< by some that are known
 };
 
 /// What is alike for all columns.
 struct RowScales {
-  Eigen::ArrayXd scales;  ///< of values
-  Eigen::ArrayXd noise;   ///< of values
-  Eigen::ArrayXd most;    ///< the largest change of each by a column's size
+  Eigen::ArrayXd scales;       ///< of values
+  Eigen::ArrayXd noise;        ///< of values
+  Eigen::ArrayXd derivatives;  ///< to which those are known
+  Eigen::ArrayXd most;         ///< the largest change of each by a column's size
 };
 
 constexpr double known = 0.1;     ///< to so much of the largest in its row a difference tells something
 constexpr double agreed = 1e-5;   ///< of that: differences that are off by less are no contradiction
 constexpr double settled = 1e-9;  ///< of that: no others are tried
 
-/// Of differences, one after another: of the usual width, and narrower ones. Where some row is steep, it changes by
-/// its own size where the number changes by less than its.
-std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows, double size) {
+/// Of differences, one after another: of the usual width, and narrower ones. Where some row is steep, or what it does
+/// not show, that changes by its own size where the number changes by less than its.
+std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows, double size, double rate) {
   constexpr double usual = 2e-3;
-  const double steepest = size * (rows.scales > 0).select(exact.abs() / rows.scales, 0.0).maxCoeff();
+  const double steepest = size * std::max(rate, (rows.scales > 0).select(exact.abs() / rows.scales, 0.0).maxCoeff());
   std::vector<double> out{usual * size};
   if (steepest > 3)
     for (const double narrower : {1.0, 0.1}) out.push_back(narrower * usual * size / steepest);
@@ -78,30 +80,36 @@ std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows
 }
 
 /// Of a column of derivatives, at a size of its number.
-Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, const ValuesAt& values, double size) {
+Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, const ValuesAt& values, double size,
+                        double rate) {
   const Eigen::Index count = exact.size();
   Compared out{.size = size};
   out.agrees.setConstant(count, false);
   out.told_otherwise.setConstant(count, false);
-  for (const double width : widths_of(exact, rows, size)) {
+  for (const double width : widths_of(exact, rows, size, rate)) {
     const auto found = extrapolated_difference(values, width);
     if (!found) continue;
     const Eigen::ArrayXd value = found->value;
     const Eigen::ArrayXd off = (value - exact).abs() * size;
-    const Eigen::ArrayXd error = 10 * (found->correction.array().abs() + rows.noise / width) * size;
+    const Eigen::ArrayXd own = 10 * rows.derivatives * size;
+    // Values are rounded, and so is the changed number.
+    const Eigen::ArrayXd rounding = (rows.noise + exact.abs() * std::numeric_limits<double>::epsilon() * size) / width;
+    const Eigen::ArrayXd of_difference = 10 * (found->correction.array().abs() + rounding) * size;
+    const Eigen::ArrayXd error = of_difference + own;
     const Eigen::ArrayXd most = rows.most.max(value.abs() * size).max(1e-3 * rows.scales);
     // Of runs that end farther apart than rows are large, differences are no derivatives.
-    const auto is_near = rows.scales <= 0 || exact.abs() * width <= rows.scales;
-    const auto is_known = is_near && error <= known * most;
+    const auto is_near =
+        (rows.scales <= 0 || exact.abs() * width <= rows.scales) && Booleans::Constant(count, rate * width <= 1);
+    const auto is_known = is_near && of_difference <= own.max(known * most);
     const auto tells = error <= most.max(rows.scales);
-    out.agrees = out.agrees || (is_known && off <= error) || (tells && off <= agreed * most);
+    out.agrees = out.agrees || (is_known && off <= error) || (tells && off <= own.max(agreed * most));
     out.told_otherwise = out.told_otherwise || (is_known && off > error);
     if (!std::exchange(out.at_all, true)) {
       out.difference = value;
       out.off = off;
       out.error = error;
     } else {
-      const Eigen::Array<bool, Eigen::Dynamic, 1> nearer = off < out.off;
+      const Booleans nearer = off < out.off;
       out.difference = nearer.select(value, out.difference).eval();
       out.error = out.error.min(error).eval();
       out.off = nearer.select(off, out.off).eval();
@@ -158,8 +166,10 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
                               const std::function<std::optional<Eigen::VectorXd>(const std::vector<Nudge>&)>& values,
                               const ValuesAreKnown& is) {
   const auto count = table.derivatives.cols();
-  RowScales rows{scales_of_rows(subject, table, is), {}, Eigen::ArrayXd::Zero(table.values.size())};
+  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(table.values.size());
+  RowScales rows{scales_of_rows(subject, table, is), none, is.derivatives.size() > 0 ? is.derivatives : none, none};
   rows.noise = (2 * std::numeric_limits<double>::epsilon() + is.tolerance) * is.growth * rows.scales;
+  if (is.conditions.size() > 0) rows.noise *= is.conditions;
   std::vector<Nudge> nudges(static_cast<std::size_t>(count));
   std::vector<double> sizes, of_numbers;
   for (std::size_t j = 0; j < nudges.size(); ++j) {
@@ -180,18 +190,25 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
   std::vector<Compared> found;
   for (std::size_t j = 0; j < nudges.size(); ++j) {
     const Eigen::ArrayXd exact = table.derivatives.col(Eigen::Index(j)).array();
-    const auto nudged = [&](double by) {
+    const double rate = is.rates.size() > 0 ? is.rates(Eigen::Index(j)) : 0;
+    std::string why = is.where_none;
+    const auto nudged = [&](double by) -> std::optional<Eigen::VectorXd> {
       nudges[j].by = by;
-      return values({nudges[j]});
+      try {
+        return values({nudges[j]});
+      } catch (const NothingBeside& reason) {
+        why = reason.what();
+        return std::nullopt;
+      }
     };
-    Compared compared = compare_column(exact, rows, nudged, sizes[j]);
+    Compared compared = compare_column(exact, rows, nudged, sizes[j], rate);
     // A derivative that is rounding says nothing of sizes.
     if (of_numbers[j] == 0 && !(compared.at_all && compared.agrees.all()))
-      if (Compared usual = compare_column(exact, rows, nudged, usual_size); usual.at_all) compared = std::move(usual);
+      if (Compared usual = compare_column(exact, rows, nudged, usual_size, rate); usual.at_all)
+        compared = std::move(usual);
     if (!compared.at_all)
-      throw GradientRefused(
-          fmt::format("--check: runs beside this one, from another {}, end early or have other events; leave it out",
-                      table.columns[j]));
+      throw GradientRefused(fmt::format("--check: {} beside this one, with another {}, {}; leave it out", is.what,
+                                        table.columns[j], why));
     table.differences.col(Eigen::Index(j)) = compared.difference;
     for (std::size_t i = 0; i < table.rows.size(); ++i)
       if (const auto at = Eigen::Index(i); !compared.agrees(at))

@@ -16,8 +16,10 @@ namespace lagroid::app {
 
 namespace {
 
-/// Minimises as the scene says; with `failure` where that did not converge. Throws SceneError.
-optimisation::Result minimised(const Section& scene, const OptimisationScene& problem, const InterruptGuard& guard) {
+/// Minimises as the scene says. Throws SceneError. Ctrl-C is noted as long as this goes on, for the best point is told
+/// then; what comes after has nothing to tell before its end, and Ctrl-C ends the program.
+optimisation::Result minimised(const Section& scene, const OptimisationScene& problem) {
+  const InterruptGuard guard;
   const auto watch = [&](const optimisation::Iterate&, const optimisation::Point&) { return !guard.interrupted(); };
   try {
     return optimisation::minimise(*problem.instance.manifold, *problem.instance.objective, problem.start,
@@ -25,6 +27,13 @@ optimisation::Result minimised(const Section& scene, const OptimisationScene& pr
   } catch (const std::invalid_argument& error) {
     scene.section_or_empty("method").fail("", error.what());
   }
+}
+
+/// Whether a minimisation ended because nothing fell any more: at a minimum, as derivatives there tell, or elsewhere.
+bool nothing_falls(optimisation::MinimisationStatus outcome) {
+  using optimisation::MinimisationStatus;
+  return outcome == MinimisationStatus::converged || outcome == MinimisationStatus::stationary_start ||
+         outcome == MinimisationStatus::stagnated || outcome == MinimisationStatus::no_step;
 }
 
 int serve(const Section& scene, const MinimumRequest& request) {
@@ -36,11 +45,13 @@ int serve(const Section& scene, const MinimumRequest& request) {
     scene.fail("method.constraint", "the minimum of a penalty is none of the problem; take another constraint");
   const SceneNumbers numbers(name, *objective, *problem.instance.manifold);
   MinimumTable table = minimum_table(problem, numbers, request);
-  const InterruptGuard guard;
-  const optimisation::Result result = minimised(scene, problem, guard);
-  table.status = to_string(result.outcome);
-  table.table.failure = result.converged() ? "" : result.message;
-  if (result.converged()) differentiate(problem, *objective, result.x, table);
+  const optimisation::Result result = minimised(scene, problem);
+  if (nothing_falls(result.outcome)) differentiate(problem, *objective, result.x, table);
+  const bool is_told = table.found.is_minimum() || table.found.status == optimisation::MinimumStatus::no_minimum;
+  if (!result.converged() && !is_told) {
+    table.status = to_string(result.outcome);
+    table.table.failure = result.message;
+  }
   const std::string& failure = table.table.failure;
   if (request.json || failure.empty())
     print(request.json ? json_of(table) + "\n" : text_of(table));

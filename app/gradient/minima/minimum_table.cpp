@@ -70,19 +70,71 @@ Eigen::VectorXd values_of_rows(const GradientTable& table, double value, const o
   return out;
 }
 
-/// The rows of the minimum that this one becomes as a number changes.
-std::optional<Eigen::VectorXd> minimised_again(const OptimisationScene& scene, const ParametricObjective& objective,
-                                               const MinimumTable& table, const Nudge& nudge) {
+/// As SceneNumbers has it. Throws NothingBeside.
+std::unique_ptr<ParametricObjective> objective_beside(const ParametricObjective& objective, const SceneNumber& number,
+                                                      double by) {
+  try {
+    return SceneNumbers::changed(objective, number, by);
+  } catch (const std::invalid_argument& reason) {
+    throw NothingBeside(fmt::format("cannot be made ({})", reason.what()));
+  }
+}
+
+/// The rows of the minimum that this one becomes as a number changes. Throws NothingBeside.
+Eigen::VectorXd minimised_again(const OptimisationScene& scene, const ParametricObjective& objective,
+                                const MinimumTable& table, const Nudge& nudge) {
   const auto number = std::find_if(table.numbers.begin(), table.numbers.end(),
                                    [&](const SceneNumber& each) { return each.name == nudge.parameter; });
-  const auto changed = SceneNumbers::changed(objective, *number, nudge.by);
-  if (!changed) return std::nullopt;
+  const auto changed = objective_beside(objective, *number, nudge.by);
   optimisation::TrustRegion method;
   const auto found = minimise(*scene.instance.manifold, *changed, table.found.x, method,
                               {.relative_gradient = 1e-10, .iterations = scene.stopping.iterations, .patience = 20});
   const auto at = minimum_derivatives(*scene.instance.manifold, *changed, found.x, {}, {.value_alone = true});
-  if (!at.strict() && at.status != MinimumStatus::not_strict) return std::nullopt;
+  if (!at.is_minimum()) throw NothingBeside(fmt::format("end at no minimum ({})", at.message));
   return values_of_rows(table.table, at.value, at.x);
+}
+
+/// The sizes of what derivatives of the value are parts of, by each number of the scene; zero where none is known.
+Eigen::ArrayXd sizes_of_parts(const MinimumTable& table) {
+  Eigen::ArrayXd out = Eigen::ArrayXd::Zero(Eigen::Index(table.numbers.size()));
+  for (std::size_t j = 0, entry = 0; j < table.numbers.size(); ++j)
+    for (std::size_t of = 0; of < table.numbers[j].entries.size(); ++of, ++entry)
+      if (const double size = table.found.value_sizes(Eigen::Index(entry)); std::isfinite(size))
+        out(Eigen::Index(j)) += size;
+  return out;
+}
+
+/// To which the minimiser's are known.
+double error_of_minimiser(const MinimumDerivatives& found) {
+  double largest = 0;
+  for (const auto& column : found.minimiser_by.colwise()) largest = std::fmax(largest, column.norm());
+  return largest * std::pow(10, -found.digits);
+}
+
+/// The size of the least value, which may be zero, is at least that of what the numbers change of it; where derivatives
+/// vanish, as of a fit without residual, that of its parts. Where curvatures are small the point moves far, and
+/// rounding with it.
+ValuesAreKnown known_of_minimum(const MinimumTable& table) {
+  const MinimumDerivatives& found = table.found;
+  const Eigen::ArrayXd parts = sizes_of_parts(table);
+  const auto rows = Eigen::Index(table.table.rows.size());
+  ValuesAreKnown out{.what = "minimisations"};
+  out.conditions.setOnes(rows);
+  out.derivatives.setConstant(rows, found.value_error);
+  double& size = out.sizes["minimum"];
+  for (std::size_t entry = 0, j = 0; j < table.numbers.size(); entry += table.numbers[j++].entries.size()) {
+    const double change =
+        found.value_is_at_rest() ? parts(Eigen::Index(j)) : std::abs(found.value_by(Eigen::Index(entry)));
+    size = std::fmax(size, change * table.numbers[j].size);
+  }
+  if (!found.strict()) return out;
+  out.rates = parts / (found.least_curvature * found.length * found.length);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    if (table.table.observed[std::size_t(i)] == 0) continue;
+    out.conditions(i) = std::max(1.0, found.largest_curvature / found.least_curvature);
+    out.derivatives(i) = error_of_minimiser(found);
+  }
+  return out;
 }
 
 void check_minimum(const OptimisationScene& scene, const ParametricObjective& objective, MinimumTable& table) {
@@ -90,11 +142,10 @@ void check_minimum(const OptimisationScene& scene, const ParametricObjective& ob
   GradientColumns columns;
   columns.parameters.resize(table.numbers.size());
   std::iota(columns.parameters.begin(), columns.parameters.end(), 0);
-  const double condition = table.found.largest_curvature / std::abs(table.found.least_curvature);
   compare_with_differences(
       subject, columns, table.table,
       [&](const std::vector<Nudge>& nudges) { return minimised_again(scene, objective, table, nudges.front()); },
-      {.growth = table.found.strict() ? std::max(1.0, condition) : 1});
+      known_of_minimum(table));
 }
 
 /// Whether rows are of the minimiser: those of the minimum alone need no equations to be solved.
@@ -170,7 +221,8 @@ std::string text_of(const MinimumTable& table) {
                      found.strict() ? fmt::format(": the minimum is {:.1e} away", found.distance) : "");
   const auto& rows = table.table.observed;
   if (std::find(rows.begin(), rows.end(), 0) != rows.end())
-    out += fmt::format("  derivatives of the minimum have {:.1f} digits\n", found.value_digits);
+    out += fmt::format("  derivatives of the minimum {} {:.1f} digits\n",
+                       found.value_is_at_rest() ? "vanish: what they are made of has" : "have", found.value_digits);
   if (asks_for_minimiser(table.table))
     out += fmt::format("  derivatives of the minimiser have {:.1f} digits\n", found.digits);
   for (const std::string& note : table.table.notes) out += fmt::format("  note: {}\n", note);

@@ -126,11 +126,7 @@ std::vector<SceneNumber> SceneNumbers::few(Eigen::Index most, std::vector<std::s
 std::unique_ptr<ParametricObjective> SceneNumbers::changed(const ParametricObjective& objective,
                                                            const SceneNumber& number, double by) {
   std::unique_ptr<ParametricObjective> out;
-  try {
-    for (const ParameterEntry& each : number.entries) out = (out ? *out : objective).changed(each, by);
-  } catch (const std::invalid_argument&) {
-    return nullptr;
-  }
+  for (const ParameterEntry& each : number.entries) out = (out ? *out : objective).changed(each, by);
   return out;
 }
 

@@ -36,7 +36,8 @@ class SceneNumbers {
   /// Parameters, and data of no more than so many numbers a table; of the others a note says how to ask for them.
   std::vector<SceneNumber> few(Eigen::Index most, std::vector<std::string>& notes) const;
 
-  /// The objective with a number changed by so much; null where there is none such.
+  /// The objective with a number changed by so much. Throws std::invalid_argument, with the reason, where there is none
+  /// such.
   static std::unique_ptr<optimisation::ParametricObjective> changed(const optimisation::ParametricObjective& objective,
                                                                     const SceneNumber& number, double by);
 

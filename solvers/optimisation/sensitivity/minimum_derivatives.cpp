@@ -37,6 +37,10 @@ double digits_of(double relative_error) {
   return std::isfinite(relative_error) ? std::clamp(-std::log10(std::max(relative_error, 1e-16)), 0.0, 16.0) : 0;
 }
 
+double largest_finite(const Eigen::RowVectorXd& numbers) {
+  return numbers.size() > 0 ? numbers.array().isFinite().select(numbers.array().abs(), 0.0).maxCoeff() : 0;
+}
+
 /// Value and minimiser at one point, with all that is known there.
 class AtMinimum {
  public:
@@ -168,6 +172,7 @@ void AtMinimum::differentiate_value() {
   const auto count = Eigen::Index(out_.parameters.size());
   slopes_.resize(state_.x.size(), count);
   sizes_.resize(count);
+  out_.length = unit();
   constexpr double eight_digits = 1e-8;
   TangentSolver solver(problem_, state_, options_.solver);
   Vector step;
@@ -177,12 +182,14 @@ void AtMinimum::differentiate_value() {
     const auto [value, slope, size] = by_parameter(k, state_.x);
     slopes_.col(k) = slope;
     sizes_(k) = size;
+    out_.value_sizes(k) = size * out_.length;
     const bool is_known = slope.allFinite();
     if (!out_.strict() && (!is_known || solver.solve(slope, step, eight_digits * size) != TangentSolveStatus::solved)) {
       ++without;
       continue;
     }
     out_.value_by(k) = value;
+    error = std::max(error, precision * out_.value_sizes(k));
     if (!out_.strict() || !is_known) continue;
     const double of_rounding = manifold_.norm(state_.x, slope) * rounding() / out_.least_curvature;
     const double of_left = left_.size() > 0 ? std::abs(manifold_.inner(state_.x, slope, left_)) : 0;
@@ -193,8 +200,8 @@ void AtMinimum::differentiate_value() {
     out_.message +=
         fmt::format("; by {} of {} parameters the least value has none either, as d_k f changes along such a direction",
                     without, count);
-  const double largest =
-      count > 0 ? out_.value_by.array().isFinite().select(out_.value_by.array().abs(), 0.0).maxCoeff() : 0;
+  out_.value_error = error;
+  const double largest = largest_finite(out_.value_is_at_rest() ? out_.value_sizes : out_.value_by);
   out_.value_digits = largest > 0 ? digits_of(error / largest + precision) : 16;
 }
 
@@ -222,7 +229,7 @@ double AtMinimum::rate_of_change(const Vector& signs) {
 }
 
 /// What residuals and rounding leave of the columns of a table, relative to its largest: of the worst table whose
-/// columns are more than that. Not a number where none is.
+/// columns have a digit more than that. Not a number where none has.
 double AtMinimum::relative_residual(const Eigen::VectorXd& residuals, const Vector& signs) const {
   std::map<std::size_t, std::pair<double, double>> tables;  // the largest column of each, and what is left of it
   for (Eigen::Index k = 0; k < signs.size(); ++k) {
@@ -233,7 +240,7 @@ double AtMinimum::relative_residual(const Eigen::VectorXd& residuals, const Vect
   }
   double worst = no_number;
   for (const auto& [table, of_it] : tables)
-    if (of_it.first > of_it.second) worst = std::fmax(worst, of_it.second / of_it.first);
+    if (of_it.first > 10 * of_it.second) worst = std::fmax(worst, of_it.second / of_it.first);
   return worst;
 }
 
@@ -289,6 +296,7 @@ MinimumDerivatives AtMinimum::differentiate(const Point& x, const std::vector<Pa
   out_.parameters = by;
   out_.x = x;
   out_.value_by.setConstant(count, no_number);
+  out_.value_sizes.setConstant(count, no_number);
   out_.minimiser_by.setConstant(manifold_.size(), count, no_number);
   state_.x = x;
   const auto told = [&] {
@@ -323,6 +331,8 @@ MinimumDerivatives AtMinimum::differentiate(const Point& x, const std::vector<Pa
 }
 
 }  // namespace
+
+bool MinimumDerivatives::value_is_at_rest() const { return largest_finite(value_by) <= 10 * value_error; }
 
 MinimumDerivatives minimum_derivatives(const Manifold& manifold, const ParametricObjective& objective, const Point& x,
                                        const std::vector<ParameterEntry>& by, const MinimumOptions& options) {

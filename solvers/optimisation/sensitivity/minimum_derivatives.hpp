@@ -59,19 +59,26 @@ struct MinimumDerivatives {
   double least_curvature = std::numeric_limits<double>::quiet_NaN();
   double largest_curvature = std::numeric_limits<double>::quiet_NaN();
   std::vector<ParameterEntry> parameters;
-  Eigen::RowVectorXd value_by;   ///< not a number where the least value has no derivative
-  Eigen::MatrixXd minimiser_by;  ///< a column in E for each; not numbers unless the minimum is strict, and by
-                                 ///< parameters of which no slope of d_k f is known
+  double length = 1;               ///< one that is not small beside x
+  Eigen::RowVectorXd value_by;     ///< not a number where the least value has no derivative
+  Eigen::RowVectorXd value_sizes;  ///< of what these are parts of: |D d_k f|, over that length
+  Eigen::MatrixXd minimiser_by;    ///< a column in E for each; not numbers unless the minimum is strict, and by
+                                   ///< parameters of which no slope of d_k f is known
   /// Of the largest column of a table, the worst, by what is left: the distance times the rate at which columns change
   /// along it (third derivatives of f), residuals over the least curvature, and the rounding of a Hessian of this
   /// condition.
   double digits = 0;
-  double value_digits =
-      0;  ///< of the largest derivative of the value: the slope of d_k f over the distance, and rounding
+  /// To which derivatives of the value are known: the slope of d_k f over the distance, and rounding of its parts.
+  double value_error = std::numeric_limits<double>::quiet_NaN();
+  double value_digits = 0;  ///< of the largest of them, or of the largest of their parts where the value has none
   Evaluations evaluations;
   long iterations = 0;  ///< of conjugate gradients
 
   bool strict() const { return status == MinimumStatus::strict; }
+  /// Whether it is one to second order.
+  bool is_minimum() const { return strict() || status == MinimumStatus::not_strict; }
+  /// Whether derivatives of the least value have not one digit above rounding, as of a fit without residual.
+  bool value_is_at_rest() const;
   /// Whether the least value has a derivative by the k-th of the parameters.
   bool value_has(Eigen::Index k) const { return value_by(k) == value_by(k); }
 };

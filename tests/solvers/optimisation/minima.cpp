@@ -162,6 +162,37 @@ TEST(MinimumDerivatives, HaveTheDigitsThatTheySay) {
   }
 }
 
+TEST(MinimumDerivatives, OfAFitWithoutResidualVanishAndHaveTheDigitsOfTheirParts) {
+  const Eigen::Index n = 4;
+  const MatrixXd a = random_matrix(7, n, 1);
+  const Stiefel group(n, n);
+  const Point turned = random_start(group, 2);
+  const MatrixXd image = a * as_matrix(turned, n);
+  const auto derivatives = [&](double residual) {
+    const Procrustes f(a, image + residual * random_matrix(7, n, 3));
+    auto out = minimum_derivatives(group, f, turned, entries_named(f.parameters(), "B"));
+    EXPECT_TRUE(out.strict()) << out.message;
+    return out;
+  };
+  const auto exact = derivatives(0);
+  EXPECT_TRUE(exact.value_is_at_rest());
+  EXPECT_GT(exact.value_digits, 14);
+  EXPECT_GT(exact.digits, 12);
+  EXPECT_LT(exact.value_by.cwiseAbs().maxCoeff(), 10 * exact.value_error);
+  EXPECT_GT(exact.value_error, 0);
+  // What a residual leaves is a difference of numbers of the size one, and has as many digits less.
+  for (const double residual : {1e-4, 1e-8, 1e-12}) {
+    const auto near = derivatives(residual);
+    EXPECT_FALSE(near.value_is_at_rest());
+    EXPECT_NEAR(near.value_digits, 15.5 + std::log10(residual), 1) << residual;
+  }
+  // The minimiser does not depend on weights, which rounding does not take for derivatives without digits.
+  const Brockett of_weights(SymmetricOperator::of(random_symmetric(6, 1)), Eigen::Vector2d(1, 2));
+  const auto by = derivatives_from(Stiefel(6, 2), of_weights, random_start(Stiefel(6, 2), 1), "weights");
+  EXPECT_LT(by.minimiser_by.norm(), 1e-13);
+  EXPECT_GT(by.digits, 12);
+}
+
 TEST(MinimumDerivatives, OfLargeProblemsAreFreeOfMatrices) {
   const Eigen::Index n = 3000;
   const VectorXd w = VectorXd::LinSpaced(n, 0, 1).array().sqrt();
