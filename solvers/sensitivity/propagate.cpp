@@ -108,6 +108,17 @@ void find_matrix_of_the_step(const LinearisedMotion& motion, Eigen::MatrixXd& ou
   }
 }
 
+/// Columns of directions that are errors of the start alone; of others alone all of them. A parameter may do little at
+/// first and much later, as a spring's stiffness from its rest, and this is no growth of errors.
+std::vector<Eigen::Index> columns_of_the_start(const Eigen::MatrixXd& directions, Eigen::Index states) {
+  std::vector<Eigen::Index> start, all;
+  for (Eigen::Index j = 0; j < directions.cols(); ++j) {
+    all.push_back(j);
+    if (directions.col(j).tail(directions.rows() - states).isZero(0)) start.push_back(j);
+  }
+  return start.empty() ? all : start;
+}
+
 /// The motion in reverse, from nodes kept on the way. Where the present step ends is kept beside them, so that a motion
 /// can take gradients back over it without making it again.
 class Reversal {
@@ -233,7 +244,9 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   out.states_kept = 1;
   out.end = directions;
   const Eigen::Index states = motion.states();
-  Growth growth(directions.topRows(states));
+  const std::vector<Eigen::Index> start = columns_of_the_start(directions, states);
+  const auto of_start = [&](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x(Eigen::seqN(0, states), start)); };
+  Growth growth(of_start(directions));
   Eigen::MatrixXd matrix;
   const double duration = duration_of(motion, steps, observed, out);
   const auto observe = [&](long node) {
@@ -251,7 +264,7 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   observe(0);
   for (long k = 0; k < steps && advance_linearised(motion, out); ++k) {
     for (int stage = 0; stage < motion.stages(); ++stage) out.end = motion.stage(stage).forward(out.end);
-    growth.after_a_step(out.end.topRows(states));
+    growth.after_a_step(of_start(out.end));
     if (growth.wants_matrix()) {
       find_matrix_of_the_step(motion, matrix);
       growth.see(matrix);

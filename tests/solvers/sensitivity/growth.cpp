@@ -49,6 +49,16 @@ TEST(Growth, DoesNotKnowTheUnits) {
   EXPECT_NEAR(there.digits_left, here.digits_left, 0.1);
 }
 
+TEST(Growth, IsThatOfTheStartWhateverParametersThereAre) {
+  // Near the rest the length does next to nothing at first, and a hundred times as much where the bob has moved.
+  const State<Pair<1>> rest{Vector<double, 1>(0.0), Vector<double, 1>(1e-6)};
+  const Sensitivities without = sensitivities(Bob(), rest, {.steps = 100});
+  const Sensitivities with = sensitivities(Bob(), rest, {.steps = 100, .parameters = {"length"}});
+  ASSERT_TRUE(without.converged() && with.converged());
+  EXPECT_EQ(with.growth, without.growth);
+  EXPECT_LT(with.growth, 2);
+}
+
 TEST(Growth, IsTheRateOfAnUnstableRest) {
   Growth growth(Eigen::Matrix2d::Identity());
   const double rate = 0.1;  // a saddle, with a momentum a million times as large as the place
