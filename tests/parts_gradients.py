@@ -43,6 +43,27 @@ class Gradients(unittest.TestCase):
             self.assertGreater(found["digits_agreed"], fewest)
             self.assertTrue(any("inner steps" in note for note in found["notes"]), found["notes"])
 
+    def test_gradients_of_moser_and_veselovs_steps(self):
+        words = (of_part("rigid_body").with_name("lagroid-gradient"), examples / "rigid_body_moser_veselov.toml", "--set", "time.steps=40")
+        for order in (2, 6, 10):
+            told = run(*words, "--set", f"time.order={order}", "--of", "final,node.10.momentum,integral.M1", "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertGreater(found["digits_agreed"], 9)
+            self.assertIn("parameters.inertia.2", found["by"])
+        # The axis of the middle moment is known by differences of the moments.
+        sphere = (*words, "--set", "parameters.inertia=[2.0, 2.0, 2.0]")
+        found = json.loads(run(*sphere, "--check", "--json").stdout)
+        self.assertGreater(found["digits_agreed"], 9)
+        self.assertFalse(any(name.startswith("parameters") for name in found["by"]))
+        told = run(*sphere, "--wrt", "parameters.inertia.1")
+        self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+        self.assertIn("all moments of inertia are equal", told.stderr)
+        # Some of these runs have no step.
+        told = run(*words, "--of", "final.M1", "--set", "time.step=2.5", "--deviations", "initial.M2=0.5", "--draws", "100", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertGreater(json.loads(told.stdout)["draws"]["refused"], 0)
+
     def test_gradients_of_reduced_runs(self):
         program = of_part("kepler").with_name("lagroid-gradient")
         steps = ("--set", "time.steps=100")

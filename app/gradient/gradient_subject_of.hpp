@@ -207,8 +207,10 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
       const auto from = started(nudges);
       return slope_of_start(from.system, from.start, parameters);
     };
-  out.refusal = [started](const std::vector<Nudge>& nudges) {
-    return differentiating::refusal_of_start(started(nudges));
+  out.refusal = [started, stated = prepared.stated](const std::vector<Nudge>& nudges) {
+    const Started<Sys> from = started(nudges);
+    const std::string why = differentiating::refusal_of_start(from);
+    return why.empty() ? refusal_of_steps(*stated, from) : why;
   };
   if (value.reduced)
     differentiating::find_refused_reduced(out);

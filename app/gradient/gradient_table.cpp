@@ -255,7 +255,7 @@ void find_refused(GradientSubject& subject) {
 }
 
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
-                                         const std::vector<Nudge>& nudges) {
+                                         const std::vector<Nudge>& nudges) try {
   if (subject.through_events) return values_through_events(subject, table, nudges);
   Eigen::VectorXd out(Eigen::Index(table.rows.size()));
   for (std::size_t first = 0; first < table.rows.size();) {
@@ -268,6 +268,8 @@ std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const G
       out(Eigen::Index(first)) = run.values(table.observed[first]);
   }
   return out;
+} catch (const std::domain_error&) {  // of numbers that a system cannot have
+  return std::nullopt;
 }
 
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,

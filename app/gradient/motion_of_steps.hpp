@@ -16,9 +16,12 @@
 #include <lagroid/solvers/sensitivity/explicit/linearised_splitting.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 #include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
+#include <lagroid/systems/rotations/linearised_moser_veselov.hpp>
 
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -81,13 +84,23 @@ std::unique_ptr<LinearisedMotion> explicit_motion(const IntegratorOptions& optio
   return nullptr;  // no scene of this system has such steps
 }
 
+/// By the method that a system alone has, to this order.
+template <DiscreteSystem Sys, class Observe>
+std::unique_ptr<LinearisedMotion> own_motion(int order, const Started<Sys>& from,
+                                             const std::vector<std::string>& parameters, const Observe& observe) {
+  if constexpr (std::is_same_v<Sys, RigidBody>)
+    return std::make_unique<LinearisedMoserVeselov>(from.system, from.start, from.configuration, order, parameters,
+                                                    observe);
+  return nullptr;  // no scene of this system has such steps
+}
+
 }  // namespace differentiating
 
 /// Whether steps are those of the discrete Lagrangian, of equal size and of one arrow each.
 template <DiscreteSystem Sys> bool by_single_steps(const StatedInitialValue<Sys>& value) {
   const IntegratorOptions& options = value.choice.options;
   return options.mode == TimeMode::fixed && options.fixed == StepKind::variational &&
-         options.composition.stages() == 1 && !value.reduced;
+         options.composition.stages() == 1 && !value.reduced && value.own_order == 0;
 }
 
 template <DiscreteSystem Sys>
@@ -119,10 +132,23 @@ void require_derivatives_of_steps(const StatedInitialValue<Sys>& value, const Se
                "mode = \"adaptive\" or equal steps");
 }
 
+/// Why no scene has its steps from there; empty where one has.
+template <DiscreteSystem Sys>
+std::string refusal_of_steps(const StatedInitialValue<Sys>& value, const Started<Sys>& from) {
+  if constexpr (std::is_same_v<Sys, RigidBody>) try {
+      if (value.own_order > 0)
+        MoserVeselov::preprocessed(from.system.inertia, from.start.momentum, from.system.h, value.own_order);
+    } catch (const std::domain_error& error) {
+      return error.what();
+    }
+  return "";
+}
+
 template <DiscreteSystem Sys, class Observe>
 std::unique_ptr<LinearisedMotion> motion_of_steps(const StatedInitialValue<Sys>& value, const Started<Sys>& from,
                                                   const std::vector<std::string>& parameters, const Observe& observe) {
   const IntegratorOptions& options = value.choice.options;
+  if (value.own_order > 0) return differentiating::own_motion(value.own_order, from, parameters, observe);
   if (options.mode == TimeMode::adaptive)
     return differentiating::timed_motion<TimeMode::adaptive>(from, parameters, observe);
   if (options.mode == TimeMode::prescribed)

@@ -109,9 +109,12 @@ template <DiscreteSystem Sys> struct StatedInitialValue {
   /// std::invalid_argument where what the scene reduces by is no symmetry of that system.
   std::function<std::unique_ptr<Integrator<Sys>>(const Sys&, const State<G>& initial, const ArrowOf<G>& configuration)>
       reduced = nullptr;
+  /// Of the method that the system alone has (SystemModule::own_methods), where that makes the steps; else 0.
+  int own_order = 0;
   /// Whether the scene sets nothing of its steps beyond their size and number, and watches for nothing.
   bool is_plain() const {
-    return by_newton_steps(choice) && choice.options.composition.stages() == 1 && !reduced && extent.events.empty();
+    return by_newton_steps(choice) && choice.options.composition.stages() == 1 && !reduced && own_order == 0 &&
+           extent.events.empty();
   }
 };
 

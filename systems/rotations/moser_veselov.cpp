@@ -17,27 +17,27 @@ namespace {
 constexpr int highest_order = 10;
 
 /// sum_k c_k t^k, as far as the highest order asks.
-using Series = std::array<double, highest_order>;
+template <class S> using PowerSeries = std::array<S, highest_order>;
 
 /// The coefficient of t^k in f g.
-double product_at(std::size_t k, const Series& f, const Series& g) {
-  double sum = 0;
+template <class S> S product_at(std::size_t k, const PowerSeries<S>& f, const PowerSeries<S>& g) {
+  S sum = 0;
   for (std::size_t i = 0; i <= k; ++i) sum += f[i] * g[k - i];
   return sum;
 }
-Series product(const Series& f, const Series& g) {
-  Series out;
+template <class S> PowerSeries<S> product(const PowerSeries<S>& f, const PowerSeries<S>& g) {
+  PowerSeries<S> out;
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = product_at(k, f, g);
   return out;
 }
 /// Requires g_0 = 1.
-Series quotient(const Series& f, const Series& g) {
-  Series out{};
+template <class S> PowerSeries<S> quotient(const PowerSeries<S>& f, const PowerSeries<S>& g) {
+  PowerSeries<S> out{};
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = f[k] - product_at(k, out, g);
   return out;
 }
-Series sum(const Series& f, double c, const Series& g) {
-  Series out;
+template <class S> PowerSeries<S> sum(const PowerSeries<S>& f, const S& c, const PowerSeries<S>& g) {
+  PowerSeries<S> out;
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = f[k] + c * g[k];
   return out;
 }
@@ -50,14 +50,15 @@ Series sum(const Series& f, double c, const Series& g) {
 /// g0 g1 I~_1 and h M3 = 2 g0 g3 I~_3. Put the exact motion in: M = (m1 u1, m1 m3 u2, m3 u3) and, from 0 to t, the
 /// quaternion (q, m1 p1, m1 m3 p2, m3 p3); their differential equations contain m1 and m3 by their squares only, and no
 /// quotient is left that a steady rotation, m1 or m3 = 0, could spoil.
-std::array<Series, 2> inverse_moments(const Vector<double, 3>& inverse_inertia, double m1_squared, double m3_squared,
-                                      double unit) {
-  const Vector<double, 3> w = unit * inverse_inertia;
-  Series u1{1}, u2{}, u3{1}, q{1}, p1{}, p2{}, p3{};
+template <class S>
+std::array<PowerSeries<S>, 2> inverse_moments(const Vector<S, 3>& inverse_inertia, const S& m1_squared,
+                                              const S& m3_squared, double unit) {
+  const Vector<S, 3> w = unit * inverse_inertia;
+  PowerSeries<S> u1{1}, u2{}, u3{1}, q{1}, p1{}, p2{}, p3{};
   for (std::size_t k = 0; k + 1 < q.size(); ++k) {
-    const auto at = [k](const Series& f, const Series& g) { return product_at(k, f, g); };
-    const auto integral = [k](double x) { return x / double(k + 1); };
-    const double m13 = m1_squared * m3_squared;
+    const auto at = [k](const PowerSeries<S>& f, const PowerSeries<S>& g) { return product_at(k, f, g); };
+    const auto integral = [k](const S& x) { return S(x / double(k + 1)); };
+    const S m13 = m1_squared * m3_squared;
     u1[k + 1] = integral(m3_squared * (w(2) - w(1)) * at(u2, u3));
     u2[k + 1] = integral((w(0) - w(2)) * at(u3, u1));
     u3[k + 1] = integral(m1_squared * (w(1) - w(0)) * at(u1, u2));
@@ -68,19 +69,42 @@ std::array<Series, 2> inverse_moments(const Vector<double, 3>& inverse_inertia, 
     p3[k + 1] = integral(0.5 * (w(2) * at(q, u3) + m1_squared * (w(1) * at(p1, u2) - w(0) * at(p2, u1))));
   }
   // (q, m1 p1, -m1 m3 p2, m3 p3) (q, m1 p1, m1 m3 p2, m3 p3)
-  Series g0 = product(q, q);
-  g0 = sum(g0, -m1_squared, product(p1, p1));
-  g0 = sum(g0, m1_squared * m3_squared, product(p2, p2));
-  g0 = sum(g0, -m3_squared, product(p3, p3));
-  const Series g1 = sum(product(q, p1), -m3_squared, product(p2, p3));
-  const Series g3 = sum(product(q, p3), m1_squared, product(p1, p2));
-  const auto inverse = [&](const Series& g, const Series& u) {
-    Series out = quotient(product(g0, g), u);
+  PowerSeries<S> g0 = product(q, q);
+  g0 = sum<S>(g0, -m1_squared, product(p1, p1));
+  g0 = sum<S>(g0, m1_squared * m3_squared, product(p2, p2));
+  g0 = sum<S>(g0, -m3_squared, product(p3, p3));
+  const PowerSeries<S> g1 = sum<S>(product(q, p1), -m3_squared, product(p2, p3));
+  const PowerSeries<S> g3 = sum<S>(product(q, p3), m1_squared, product(p1, p2));
+  const auto inverse = [&](const PowerSeries<S>& g, const PowerSeries<S>& u) {
+    PowerSeries<S> out = quotient(product(g0, g), u);
     std::rotate(out.begin(), out.begin() + 1, out.end());
-    for (double& c : out) c *= 2 / unit;
+    for (S& c : out) c *= 2 / unit;
     return out;
   };
   return {inverse(g1, u1), inverse(g3, u3)};
+}
+
+/// The 1 / I~.
+template <class S>
+Vector<S, 3> modified_inverses(const Vector<S, 3>& inertia, const Vector<S, 3>& momentum, double h, int order) {
+  std::array<int, 3> axis{0, 1, 2};
+  std::sort(axis.begin(), axis.end(), [&](int i, int j) { return inertia(i) < inertia(j); });
+  const auto [a, b, c] = axis;
+  const Vector<S, 3> inverse = inertia.cwiseInverse();
+  // The point without a component along the middle axis of the same |M| and energy: there is one on every trajectory.
+  const S spread = inverse(a) - inverse(c);
+  const S weight = spread > S(0) ? S((inverse(b) - inverse(c)) / spread) : S(0);
+  const S squared = momentum(b) * momentum(b);
+  const auto [first, third] =
+      inverse_moments<S>({inverse(a), inverse(b), inverse(c)}, momentum(a) * momentum(a) + weight * squared,
+                         momentum(c) * momentum(c) + (1 - weight) * squared, 0.5 * h);
+  Vector<S, 3> out = Vector<S, 3>::Zero();
+  for (int k = 0; k <= order - 2; k += 2) {
+    out(a) += first[std::size_t(k)];
+    out(c) += third[std::size_t(k)];
+  }
+  out(b) = out(c) + weight * (out(a) - out(c));
+  return out;
 }
 
 /// sum_{i<j} d_i d_j.
@@ -97,27 +121,17 @@ Vector<double, 3> preprocess(const Vector<double, 3>& inertia, const Vector<doub
     throw std::invalid_argument(fmt::format("discrete Moser-Veselov with a step of {}", h));
   if (order == 2) return inertia;
 
-  std::array<int, 3> axis{0, 1, 2};
-  std::sort(axis.begin(), axis.end(), [&](int i, int j) { return inertia(i) < inertia(j); });
-  const auto [a, b, c] = axis;
-  const Vector<double, 3> inverse = inertia.cwiseInverse();
-  // The point without a component along the middle axis of the same |M| and energy: there is one on every trajectory.
-  const double spread = inverse(a) - inverse(c);
-  const double weight = spread > 0 ? (inverse(b) - inverse(c)) / spread : 0;
-  const double squared = momentum(b) * momentum(b);
-  const auto [first, third] =
-      inverse_moments({inverse(a), inverse(b), inverse(c)}, momentum(a) * momentum(a) + weight * squared,
-                      momentum(c) * momentum(c) + (1 - weight) * squared, 0.5 * h);
-  Vector<double, 3> out = Vector<double, 3>::Zero();
-  for (int k = 0; k <= order - 2; k += 2) {
-    out(a) += first[std::size_t(k)];
-    out(c) += third[std::size_t(k)];
-  }
-  out(b) = out(c) + weight * (out(a) - out(c));
+  const Vector<double, 3> out = modified_inverses(inertia, momentum, h, order);
   if (!out.allFinite() || !(out.minCoeff() > 0))
     throw std::domain_error(
         fmt::format("discrete Moser-Veselov of order {}: a step of {} is too long for this momentum", order, h));
   return out.cwiseInverse();
+}
+
+Vector<VariedNumber, 3> preprocess(const Vector<VariedNumber, 3>& inertia, const Vector<VariedNumber, 3>& momentum,
+                                   double h, int order) {
+  if (order == 2) return inertia;
+  return modified_inverses(inertia, momentum, h, order).cwiseInverse();
 }
 
 MoserVeselov MoserVeselov::preprocessed(const Vector<double, 3>& inertia, const Vector<double, 3>& momentum, double h,
@@ -138,10 +152,11 @@ std::optional<Vector<double, 3>> MoserVeselov::rodrigues(const Vector<double, 3>
   const double square = u.squaredNorm();
   const double determinant = modified.prod();
   const double trace = 0.5 * modified.sum();
-  const double e = pairs_of(weights());
+  const double e = pairs_of(weights<double>());
   const double constant = determinant * u.cwiseQuotient(modified).dot(u);
   // Newton's iteration from the left, where f falls and is convex: up to `inflection` at most.
-  const double inflection = 0.5 * (trace - std::sqrt(std::max(0.0, (weights().squaredNorm() - 4 * square) / 3)));
+  const double inflection =
+      0.5 * (trace - std::sqrt(std::max(0.0, (weights<double>().squaredNorm() - 4 * square) / 3)));
   for (;;) {
     const double b = square - k * trace + k * k;
     const double f = b * b + (e * k - determinant) * k + constant;
@@ -157,7 +172,7 @@ std::optional<Vector<double, 3>> MoserVeselov::rodrigues(const Vector<double, 3>
 }
 
 bool MoserVeselov::admissible(const Matrix<double, 3, 3>& g) const {
-  const Vector<double, 3> d = weights();
+  const Vector<double, 3> d = weights<double>();
   const double a = g.diagonal().dot(d);
   // The characteristic polynomial of gD is x^3 - a x^2 + b x - det D.
   const Matrix<double, 3, 3> y = g * d.asDiagonal();

@@ -14,6 +14,7 @@
 /// std::domain_error where h is too large for the moments or for a step. (Moser and Veselov 1991; Hairer and Vilmart
 /// 2006.)
 
+#include <lagroid/core/derivatives/varied_directions.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
 #include <lagroid/solvers/methods/method.hpp>
@@ -35,6 +36,10 @@ namespace lagroid {
 /// Requires order 2 (I~ = I), 4, 6, 8 or 10, positive moments, h other than zero, and all of them finite; throws
 /// std::invalid_argument otherwise. Throws std::domain_error for an h so large that a moment I~ is not positive.
 Vector<double, 3> preprocess(const Vector<double, 3>& inertia, const Vector<double, 3>& momentum, double h, int order);
+/// The same with derivatives. Requires what the other does not throw for. Where all three moments are equal those by
+/// the moments are wrong: the axis of the middle one is known by their differences.
+Vector<VariedNumber, 3> preprocess(const Vector<VariedNumber, 3>& inertia, const Vector<VariedNumber, 3>& momentum,
+                                   double h, int order);
 
 /// Free motion about a fixed point: L(g) = tr(D (1 - g)) / h on SO(3) with D = tr(I~) / 2 - I~ (Moser and Veselov,
 /// Commun. Math. Phys. 139 (1991) 217), that is
@@ -67,7 +72,7 @@ struct MoserVeselov : System<MoserVeselov, SO3> {
                                    int order);
 
   template <class S> S lagrangian(const Matrix<S, 3, 3>& g) const {
-    const Vector<double, 3> d = weights() / h;
+    const Vector<ParameterScalar<S>, 3> d = weights<S>() / h;
     return (1.0 - g(0, 0)) * d(0) + (1.0 - g(1, 1)) * d(1) + (1.0 - g(2, 2)) * d(2);
   }
 
@@ -97,7 +102,10 @@ struct MoserVeselov : System<MoserVeselov, SO3> {
 
  private:
   /// The diagonal of D.
-  Vector<double, 3> weights() const { return Vector<double, 3>::Constant(0.5 * modified.sum()) - modified; }
+  template <class S> Vector<ParameterScalar<S>, 3> weights() const {
+    const auto& moments = varied<S>(modified);
+    return Vector<ParameterScalar<S>, 3>::Constant(0.5 * moments.sum()) - moments;
+  }
 };
 
 /// The step in closed form: no iteration but that for the one number k. No allocation.

@@ -57,7 +57,15 @@ PreparedScene<RigidBody> moser_veselov(const Section& scene, const RunContext& c
             return simulate(system, presentation, initial.state, initial.configuration, {}, extent, context,
                             observer ? as_body : nullptr);
           },
-          [=] { return motion_of(system, presentation, initial.state, initial.configuration, {}); }};
+          [=] { return motion_of(system, presentation, initial.state, initial.configuration, {}); },
+          {},
+          std::make_shared<const StatedInitialValue<RigidBody>>(
+              StatedInitialValue<RigidBody>{.initial = initial.state,
+                                            .configuration = initial.configuration,
+                                            .presentation = dressed<RigidBody>(body, name, dress),
+                                            .choice = {},
+                                            .extent = extent,
+                                            .own_order = order})};
 }
 
 void add_moser_veselov(std::vector<Method>& methods) {
