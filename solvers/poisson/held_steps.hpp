@@ -84,10 +84,7 @@ template <class Sys> class HeldSteps {
     const X last = follow([&](const Inner& inner, const X& x, const X& y, const X& z) {
       const auto rows = [&](const auto& at) { return by_rows(inner, at); };
       const Eigen::MatrixXd of_y = detail::chained(varied_jacobian<n>(rows, x, members), out);
-      const detail::AlongGradients back(OnLevels::slope_of_values(system_, y), z - y, OnLevels::dependent);
-      const Eigen::MatrixXd of_u =
-          detail::chained(OnLevels::slope_along(system_, y, back.multipliers(), members), of_y);
-      out = back.slope(of_u, OnLevels::slope_of_values(system_, z, members), of_levels);
+      out = OnLevels::slope_of_way(system_, y, z, of_y, of_levels, members);
     });
     if (!last.allFinite()) out.setConstant(std::numeric_limits<double>::quiet_NaN());
     return out;

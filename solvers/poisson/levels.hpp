@@ -21,7 +21,8 @@
 ///
 ///     dz = du + G(y)^T dl,    G(z) G(y)^T dl = dL - G(z) du.
 ///
-/// `slope_along` is that of u, `detail::AlongGradients` has the l_c and the rest.
+/// `slope_along` is that of u, `detail::AlongGradients` has the l_c and the rest, `slope_of_way` is all of it. Where
+/// gradients are kept at y, as in a ProjectedStep (steps.hpp), it is exact.
 ///
 /// Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, 2006, IV.4.
 
@@ -206,6 +207,15 @@ template <class Sys, bool WithEnergy> class Levels {
       return out;
     };
     return varied_jacobian<n>(moved, x, members);
+  }
+  /// That of the point z of levels that is reached along the gradients at y, from those of y and of the levels, by the
+  /// same columns. Gradients are passed over as by AlongGradients. Allocates.
+  static Eigen::MatrixXd slope_of_way(const Sys& system, const X& y, const X& z, const Eigen::MatrixXd& of_y,
+                                      const Eigen::MatrixXd& of_levels, Members members,
+                                      double passed_over = dependent) {
+    const detail::AlongGradients way(slope_of_values(system, y), z - y, passed_over);
+    const Eigen::MatrixXd of_u = detail::chained(slope_along(system, y, way.multipliers(), members), of_y);
+    return way.slope(of_u, slope_of_values(system, z, members), of_levels);
   }
 
  private:

@@ -60,11 +60,11 @@ class PoissonIntegrator {
   virtual KeptStructure kept() const = 0;
   /// D Phi at the present point, Phi the next step: columns by the point, and then by these parameters of the system,
   /// with noise on its path. Not numbers where the step does not converge. Throws std::invalid_argument for a name that
-  /// is no parameter, or a method that has no derivative; WithoutDerivative for a parameter that the system reads as a
-  /// plain number. By a tolerance D holds the sizes and rows of the inner steps that it asks for (held_steps.hpp).
+  /// is no parameter; WithoutDerivative for a parameter that the system reads as a plain number. By a tolerance D holds
+  /// the sizes and rows of the inner steps that it asks for (held_steps.hpp).
   virtual Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const = 0;
   /// The largest entry of D pi D^T - pi(Phi) over the largest of pi(Phi), Phi the next step and D its derivative; not a
-  /// number where the method has no derivative, or goes by a tolerance.
+  /// number where the method goes by a tolerance.
   virtual double poisson_defect() const = 0;
   /// Visits all that the next step goes on from: an integrator begun with the same arguments, to which it is restored,
   /// goes on with the same bits.

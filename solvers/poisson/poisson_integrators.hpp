@@ -56,32 +56,23 @@ template <class Sys, class Step> class PoissonSteps final : public PoissonIntegr
   }
   KeptStructure kept() const override { return Step::kept; }
   Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const override {
-    if constexpr (has_slope) {
-      return slope_by_parameters(
-          system_, parameters, make_,
-          [&](const Step& step) {
-            X end = x_;
-            if (!take_stages(step, end).converged()) end.setConstant(std::numeric_limits<double>::quiet_NaN());
-            return end;
-          },
-          [&](const Step& step, const auto& members) { return along_stages(step, members).second; }, checked_);
-    } else {
-      throw std::invalid_argument("steps of " + std::string(method_.name) + " have no derivative");
-    }
+    return slope_by_parameters(
+        system_, parameters, make_,
+        [&](const Step& step) {
+          X end = x_;
+          if (!take_stages(step, end).converged()) end.setConstant(std::numeric_limits<double>::quiet_NaN());
+          return end;
+        },
+        [&](const Step& step, const auto& members) { return along_stages(step, members).second; }, checked_);
   }
   double poisson_defect() const override {
-    if constexpr (has_slope) {
-      const auto [end, slope] = along_stages(step_, {});
-      if (end.allFinite())
-        return bracket_change(system_, x_, end, Matrix<double, Sys::dimension, Sys::dimension>(slope));
-    }
-    return std::numeric_limits<double>::quiet_NaN();
+    const auto [end, slope] = along_stages(step_, {});
+    if (!end.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    return bracket_change(system_, x_, end, Matrix<double, Sys::dimension, Sys::dimension>(slope));
   }
   void serialize(NumberArchive& archive) override { archive(x_, index_); }
 
  private:
-  static constexpr bool has_slope = requires(const Step& step, const X& x) { step.slope(x, 0.0); };
-
   /// x to where a step leads; unless it converges, x stays.
   StepReport take_stages(const Step& step, X& x) const {
     const X before = x;

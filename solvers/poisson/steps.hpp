@@ -16,6 +16,7 @@
 
 #include <lagroid/core/derivatives/varied_directions.hpp>
 #include <lagroid/solvers/poisson/formulas.hpp>
+#include <lagroid/solvers/poisson/levels.hpp>
 #include <lagroid/solvers/status.hpp>
 #include <lagroid/solvers/step/step_solver.hpp>
 
@@ -125,7 +126,12 @@ template <class Formula> class FormulaStep {
   }
 };
 
-/// The step, and then the nearest point on the Casimirs' old values, along their gradients at the new one.
+/// The step to y, and from there along the gradients of the Casimirs at y to the point where they have their old
+/// values,
+///
+///     z = y + G(y)^T l,    C(z) = C(x),
+///
+/// by Newton's method for l, which has no part in the derivative (levels.hpp).
 template <class Step> class ProjectedStep {
  public:
   static constexpr int size = Step::size;
@@ -147,6 +153,7 @@ template <class Step> class ProjectedStep {
       constexpr int count = casimir_count<Sys>();
       using J = Jet<double, size>;
       const Vector<double, count> wanted = system.casimirs(x);
+      Matrix<double, count, size> along;
       for (int pass = 0; report.converged() && pass < 4; ++pass) {
         Vector<J, size> at;
         for (int i = 0; i < size; ++i) at(i) = J::variable(end(i), i);
@@ -158,12 +165,22 @@ template <class Step> class ProjectedStep {
           slope.row(c) = casimirs(c).gradient().transpose();
           gap(c) = wanted(c) - casimirs(c).value;
         }
-        square = slope * slope.transpose();
+        if (pass == 0) along = slope;
+        square = slope * along.transpose();
         if (eliminate(square, gap) == 0) report.status = SolveStatus::singular;
-        end += slope.transpose() * gap;
+        end += along.transpose() * gap;
       }
     }
     return report;
+  }
+  StepSlope<size> slope(const X& x, double h, std::span<const double* const> members = {}) const {
+    using OnLevels = Levels<std::remove_cvref_t<decltype(system())>, false>;
+    X y;
+    X z;
+    if (!step.take(x, h, y).converged() || !take(x, h, z).converged())
+      return unknown_slope<size>(size + int(members.size()));
+    return OnLevels::slope_of_way(system(), y, z, step.slope(x, h, members),
+                                  OnLevels::slope_of_values(system(), x, members), members, 0);
   }
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 /// The motion of a Poisson system as one whose steps are linearised: the derivative of a step by its point and by
-/// parameters of the system is exact, of all methods but projected-midpoint, and the product of these is that of the
-/// run.
+/// parameters of the system is exact, of all methods, and the product of these is that of the run.
 ///
 ///     LinearisedPoissonMotion motion(make_poisson_integrator(LotkaVolterra{}, {2, 0.5}, {}), {"growth"});
 ///     const Propagated end = propagate_forward(motion, 100, Eigen::MatrixXd::Identity(3, 3));
