@@ -85,8 +85,10 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
   /// H = |p|^2 / (2 m) + U(q).
   double energy(const State<Pair<N>>& s) const { return kinetic_energy(s.momentum) + potential_energy(s.object); }
   /// By velocities, which neither overflow nor underflow where p^2 does.
-  double kinetic_energy(const Vector<double, N>& p) const { return 0.5 * p.dot(p / self().mass()); }
-  double potential_energy(const Vector<double, N>& q) const { return self().potential(q); }
+  template <class S> S kinetic_energy(const Vector<S, N>& p) const {
+    return p.dot(Vector<S, N>(p / constant<S>(mass_in<S>()))) * 0.5;
+  }
+  template <class S> S potential_energy(const Vector<S, N>& q) const { return self().potential(q); }
 
  protected:
   static constexpr auto quadrature_parameter() {

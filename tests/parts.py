@@ -125,6 +125,10 @@ class Parts(unittest.TestCase):
                 found = json.loads(told.stdout)
                 self.assertEqual(len(found["by"]), columns, scene)
                 self.assertGreater(found["digits_agreed"], 8, scene)
+        told = run(of_part("poisson"), "gradient", examples / "three_species.toml", "--set", "time.method=projected-midpoint", "--set",
+                   "time.steps=40", "--of", "final", "--json", "--check")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertGreater(json.loads(told.stdout)["digits_agreed"], 8)
         refused = {("--wrt", "parameters.mass"): "nothing of that name is differentiable here",
                    ("--set", 'event=[{name = "e", when = "x - 1"}]'): "no derivatives through events"}
         for words, why in refused.items():

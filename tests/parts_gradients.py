@@ -27,6 +27,27 @@ class Gradients(unittest.TestCase):
         self.assertEqual(told.returncode, 3, told.stderr)
         self.assertIn("has no root", told.stderr)
 
+    def test_gradients_in_transformed_time(self):
+        words = (of_part("kepler").with_name("lagroid-gradient"), examples / "kepler.toml", "--set", "time.mode=transformed", "--set", "time.steps=50")
+        for order in (2, 6):
+            told = run(*words, "--set", f"time.order={order}", "--of", "final.position,final.t,node.20.momentum", "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertGreater(found["digits_agreed"], 8)
+            self.assertIn("parameters.strength", found["by"])
+        told = run(*words, "--of", "integral.position")
+        self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+
+    def test_gradients_of_adaptive_steps_that_go_on(self):
+        words = ("gradient", examples / "pendulum_adaptive.toml", "--set", "parameters.quadrature=trapezoid", "--set", "time.steps=30")
+        told = run(of_part("pendulum"), *words, "--set", "time.without_root=constant", "--check", "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        found = json.loads(told.stdout)
+        self.assertGreater(found["digits_agreed"], 7)
+        self.assertTrue(any("for want of a root" in note for note in found["notes"]), found["notes"])
+        told = run(of_part("pendulum"), *words, "--set", "time.without_root=controlled")
+        self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+
     def test_gradients_of_explicit_steps(self):
         runge_kutta = ("--set", "time.method=runge-kutta", "--set", "time.steps=60", "--check", "--json")
         for system in ("pendulum", "damped_pendulum"):

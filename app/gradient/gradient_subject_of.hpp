@@ -171,6 +171,8 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     out.notes.push_back("derivatives hold the inner steps that the tolerance asked for between nodes");
     out.tolerance = value.choice.options.tolerance;
   }
+  if (value.choice.options.mode == TimeMode::adaptive && value.choice.options.without_root == WithoutRoot::constant)
+    out.notes.push_back("derivatives hold which steps have the size of the first, for want of a root");
   out.system = value.presentation.name;
   out.steps = value.extent.steps;
   const differentiating::ObservedColumns<Sys> observe{};

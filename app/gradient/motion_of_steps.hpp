@@ -48,9 +48,9 @@ std::unique_ptr<Integrator<Sys>> integrator_of(const Started<Sys>& from, const C
 }
 
 /// By steps that vary, observed with the time after object and momentum.
-template <TimeMode mode, DiscreteSystem Sys, class Observe>
+template <TimeMode mode, DiscreteSystem Sys, class Observe, class... Option>
 std::unique_ptr<LinearisedMotion> timed_motion(const Started<Sys>& from, const std::vector<std::string>& parameters,
-                                               const Observe& observe) {
+                                               const Observe& observe, const Option&... option) {
   if constexpr (TimedDerivatives<Sys, mode>) {
     const auto with_time = [observe](const ObservedTimedNode<Sys>& node) {
       constexpr int first = Sys::GroupoidType::object_coordinate_count() + Sys::dimension;
@@ -59,7 +59,8 @@ std::unique_ptr<LinearisedMotion> timed_motion(const Started<Sys>& from, const s
       all << seen.head(first), node.time, seen.tail(seen.size() - first);
       return all;
     };
-    return std::make_unique<TimedMotion<Sys, mode>>(from.system, from.start, from.configuration, parameters, with_time);
+    return std::make_unique<TimedMotion<Sys, mode>>(from.system, from.start, from.configuration, parameters, with_time,
+                                                    option...);
   } else {
     return nullptr;  // no scene of this system has such steps
   }
@@ -105,8 +106,10 @@ template <DiscreteSystem Sys> bool by_single_steps(const StatedInitialValue<Sys>
 
 template <DiscreteSystem Sys>
 void require_derivatives_of_steps(const StatedInitialValue<Sys>& value, const Section& scene) {
-  const IntegratorChoice& choice = value.choice;
-  const IntegratorOptions& options = choice.options;
+  IntegratorChoice choice = value.choice;
+  IntegratorOptions& options = choice.options;
+  // Steps of the first one's size where others have no root are solved by Newton, too.
+  if (options.without_root == WithoutRoot::constant) options.without_root = WithoutRoot::stop;
   if (value.reduced) {
     if (!by_newton_steps(choice))
       scene.fail("time",
@@ -114,11 +117,12 @@ void require_derivatives_of_steps(const StatedInitialValue<Sys>& value, const Se
                  "round-off; leave out other modes and methods, accuracy and [solver], or reduce");
     return;
   }
-  if (!solved_by_newton(choice) && !(options.mode == TimeMode::fixed && options.fixed != StepKind::variational))
-    scene.fail(
-        "time",
-        "gradient takes equal steps, perhaps composed, and adaptive, prescribed or controlled ones, solved by "
-        "Newton to round-off, and explicit ones of equal size; leave out other modes, without_root and [solver]");
+  const bool is_explicit = options.mode == TimeMode::transformed ||
+                           (options.mode == TimeMode::fixed && options.fixed != StepKind::variational);
+  if (!solved_by_newton(choice) && !is_explicit)
+    scene.fail("time",
+               "gradient takes equal steps, perhaps composed, and adaptive, prescribed or controlled ones, solved by "
+               "Newton to round-off, and explicit ones; leave out without_root = \"controlled\" and [solver]");
   if (options.fixed == StepKind::runge_kutta && !HasVariedRates<Sys>)
     scene.fail("time", "the rates of this system have no derivatives; leave out method = \"runge-kutta\"");
   if (options.fixed == StepKind::extrapolation && Sys::object_constraints > 0)
@@ -126,6 +130,8 @@ void require_derivatives_of_steps(const StatedInitialValue<Sys>& value, const Se
         "time",
         "extrapolated steps have derivatives along constraints of places alone, off which inner steps are others; "
         "take method = \"splitting\"");
+  if (options.mode == TimeMode::transformed && !TimedDerivatives<Sys, TimeMode::transformed>)
+    scene.fail("time", "the energies of this system have no derivatives; take another mode");
   if (options.mode == TimeMode::controlled && !TimedDerivatives<Sys, TimeMode::controlled>)
     scene.fail("time",
                "the time scale by which steps of this system are controlled has no derivatives; take "
@@ -150,11 +156,13 @@ std::unique_ptr<LinearisedMotion> motion_of_steps(const StatedInitialValue<Sys>&
   const IntegratorOptions& options = value.choice.options;
   if (value.own_order > 0) return differentiating::own_motion(value.own_order, from, parameters, observe);
   if (options.mode == TimeMode::adaptive)
-    return differentiating::timed_motion<TimeMode::adaptive>(from, parameters, observe);
+    return differentiating::timed_motion<TimeMode::adaptive>(from, parameters, observe, options.without_root);
   if (options.mode == TimeMode::prescribed)
     return differentiating::timed_motion<TimeMode::prescribed>(from, parameters, observe);
   if (options.mode == TimeMode::controlled)
     return differentiating::timed_motion<TimeMode::controlled>(from, parameters, observe);
+  if (options.mode == TimeMode::transformed)
+    return differentiating::timed_motion<TimeMode::transformed>(from, parameters, observe, options.composition);
   if (options.fixed != StepKind::variational)
     return differentiating::explicit_motion(options, from, parameters, observe);
   // Steps of a reduced run are those of the full one, found on a smaller groupoid: at their solutions the equations of

@@ -85,7 +85,7 @@ concept NystromSystem = SplitSystem<Sys> && requires {
 ///     double kinetic_energy(const AlgebroidVector<G>& mu) const
 ///     double potential_energy(const Object<double>& q) const        negative wherever the motion goes
 ///
-/// and declares `static constexpr bool attractive = true`.
+/// and declares `static constexpr bool attractive = true`. Derivatives of runs want both as templates on the scalar.
 template <class Sys>
 concept AttractiveSystem = SplitSystem<Sys> && Sys::parts == 2 &&
                            requires(const Sys& system, const State<typename Sys::GroupoidType>& z) {

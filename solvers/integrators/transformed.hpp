@@ -20,6 +20,38 @@
 
 namespace lagroid {
 
+namespace detail {
+
+/// A step of this length of s, over any scalar; returns the time that it takes. `inside` becomes false where U is not
+/// negative or T - E not positive.
+template <AttractiveSystem Sys, class S>
+S transformed_step(const Sys& system, const Composition& composition, const S& energy, const S& length,
+                   SplitMotion<Sys, S>& motion, bool& inside) {
+  S time(0.0);
+  const auto kick = [&](double share) {
+    const S depth = -system.potential_energy(motion.object());
+    inside = inside && depth > S(0.0);
+    motion.template follow<0>(S(share * length / depth));
+  };
+  const auto drift = [&](double share) {
+    const S depth = system.kinetic_energy(motion.momentum()) - energy;
+    inside = inside && depth > S(0.0);
+    const S t = share * length / depth;
+    motion.template follow<1>(t);
+    time += t;
+  };
+  double begun = 0;
+  for (const double gamma : composition.coefficients) {
+    drift(begun + 0.5 * gamma);
+    kick(gamma);
+    begun = 0.5 * gamma;
+  }
+  drift(begun);
+  return time;
+}
+
+}  // namespace detail
+
 /// Integrates H = T + U, U < 0, by splitting the logarithmic Hamiltonian log(T - E) - log(-U), E the energy at the
 /// start (Mikkola and Tanikawa, Celest. Mech. Dyn. Astron. 74 (1999) 287; Preto and Tremaine, Astron. J. 118 (1999)
 /// 2532). Where H = E its motion is that of H in the time s with dt = ds / (T - E) = ds / (-U), so that equal steps of
@@ -63,6 +95,9 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
     step_ *= share;
     trajectory_ = CompensatedTrajectory<Sys>(system_.groupoid, from.state, from.configuration);
   }
+  /// E of H = E, and of what length steps are in s.
+  double energy() const { return energy_; }
+  double length() const { return step_; }
   /// Steps end where they end in time.
   static constexpr bool has_own_time = true;
   /// Goes on with the motions of the energy that this state has.
@@ -91,27 +126,8 @@ template <AttractiveSystem Sys> class TransformedIntegrator {
 
 template <AttractiveSystem Sys> StepReport TransformedIntegrator<Sys>::advance() {
   SplitMotion<Sys, double> motion(system_, point().state.object, point().state.momentum);
-  double time = 0;
   bool inside = true;
-  const auto kick = [&](double share) {
-    const double depth = -system_.potential_energy(motion.object());
-    inside = inside && depth > 0;
-    motion.template follow<0>(share * step_ / depth);
-  };
-  const auto drift = [&](double share) {
-    const double depth = system_.kinetic_energy(motion.momentum()) - energy_;
-    inside = inside && depth > 0;
-    const double t = share * step_ / depth;
-    motion.template follow<1>(t);
-    time += t;
-  };
-  double begun = 0;
-  for (const double gamma : composition_.coefficients) {
-    drift(begun + 0.5 * gamma);
-    kick(gamma);
-    begun = 0.5 * gamma;
-  }
-  drift(begun);
+  const double time = detail::transformed_step(system_, composition_, energy_, step_, motion, inside);
   StepReport report;
   report.status = !std::isfinite(time) || !motion.finite() ? SolveStatus::not_finite
                   : inside                                 ? SolveStatus::converged

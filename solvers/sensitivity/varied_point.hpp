@@ -87,6 +87,32 @@ void compare_with_differences(const Sys& system, double& member, const std::stri
   require_derivative(name, derivative, difference(width), difference(width / 2), at(here).norm() / width);
 }
 
+/// Of a node, in the units of what it consists of.
+template <DiscreteSystem Sys> double size_of(const Sys& system, const TrajectoryPoint<Sys>& point) {
+  return point.state.momentum.norm() + system.groupoid.coordinates_of_arrow(point.configuration).norm();
+}
+
+/// The derivatives of where a step in closed form ends by each parameter, a column each, beside differences of end(),
+/// which computes it from members as they are: of a system that is no constant. `size` is that of what rounding is of.
+template <class End>
+void compare_with_differences(const ParameterPlaces& places, const Eigen::MatrixXd& derivatives, double size,
+                              const End& end) {
+  for (std::size_t j = 0; j < places.members.size(); ++j) {
+    double& member = const_cast<double&>(*places.members[j]);
+    const double here = member;
+    const auto at = [&](double value) -> Eigen::VectorXd {
+      member = value;
+      const Eigen::VectorXd there = end();
+      member = here;
+      return there;
+    };
+    const double width = 1e-4 * (here == 0 ? 1 : std::abs(here));
+    const auto difference = [&](double by) -> Eigen::VectorXd { return (at(here + by) - at(here - by)) / (2 * by); };
+    require_derivative(places.names[j], derivatives.col(Eigen::Index(j)), difference(width), difference(width / 2),
+                       size / width);
+  }
+}
+
 /// Those by each parameter, whose columns are behind those of the start.
 template <DiscreteSystem Sys>
 void compare_with_differences(const Sys& system, const ParameterPlaces& places, const Step<Sys>& step,

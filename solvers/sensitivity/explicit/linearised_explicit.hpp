@@ -16,7 +16,6 @@
 #include <lagroid/solvers/sensitivity/explicit/charts_of_nodes.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion_of.hpp>
 
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,25 +85,11 @@ template <DiscreteSystem Sys, class Steps> class LinearisedExplicit : public Lin
     });
   }
 
-  /// Each parameter, beside differences of the step.
   void compare(const Chart& before, const Chart& after) {
     const Vector<double, Chart::states> still = Vector<double, Chart::states>::Zero();
-    const double size =
-        before_.state.momentum.norm() + system_.groupoid.coordinates_of_arrow(before_.configuration).norm();
-    for (std::size_t j = 0; j < places_.members.size(); ++j) {
-      double& member = const_cast<double&>(*places_.members[j]);  // of system_, no constant
-      const double here = member;
-      const auto at = [&](double value) -> Eigen::VectorXd {
-        member = value;
-        const Eigen::VectorXd end = after.displacement(steps_.step(system_, before.displaced(still)));
-        member = here;
-        return end;
-      };
-      const double width = 1e-4 * (here == 0 ? 1 : std::abs(here));
-      const auto difference = [&](double by) -> Eigen::VectorXd { return (at(here + by) - at(here - by)) / (2 * by); };
-      detail::require_derivative(places_.names[j], stage_.end_by_start.col(Chart::states + Eigen::Index(j)),
-                                 difference(width), difference(width / 2), size / width);
-    }
+    detail::compare_with_differences(
+        places_, stage_.end_by_start.rightCols(parameters()), detail::size_of(system_, before_),
+        [&] { return Eigen::VectorXd(after.displacement(steps_.step(system_, before.displaced(still)))); });
   }
 
   Sys system_;

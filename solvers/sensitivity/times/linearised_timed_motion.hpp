@@ -14,9 +14,12 @@
 /// States are (v, mu, t, p_t), and epsilon after them where steps are prescribed; a start varies by the first two
 /// alone. The matrix of each step but the first is symplectic on the extended phase space, at a given epsilon.
 ///
+/// Adaptive steps may go on where the energy has no root, by steps of the first one's size (WithoutRoot::constant):
+/// these have t1 - t0 = h too, and p_t as it is. Which steps they are is held.
+///
 /// Requires a Timed system that is not nonholonomic, with a `time_scale` of its arrows for prescribed steps. Errors:
-/// std::invalid_argument for a name that is no parameter; WithoutDerivative for one that is read as a plain number. A
-/// step without root is its status.
+/// std::invalid_argument for a name that is no parameter, and for WithoutRoot::controlled; WithoutDerivative for one
+/// that is read as a plain number. A step without root is its status, unless it goes on.
 
 #include <lagroid/groupoids/time_extended.hpp>
 #include <lagroid/solvers/integrators/adaptive.hpp>
@@ -28,6 +31,7 @@
 #include <lagroid/solvers/step/newton_step.hpp>
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -56,13 +60,27 @@ template <class Sys> struct TimedSteps<Sys, TimeMode::adaptive> {
   using Extended = FreeTime<Sys>;
   using Integrating = AdaptiveIntegrator<Sys>;
   static Extended extended(const Sys& system) { return Extended(system); }
-  static auto solver() { return std::make_unique<NewtonStep<Extended>>(); }
+  static Integrating begun(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                           const ArrowOf<typename Sys::GroupoidType>& configuration, WithoutRoot without_root) {
+    if (without_root == WithoutRoot::controlled)
+      throw std::invalid_argument("steps that a control gives where the energy has no root have no derivative");
+    return {system,
+            start,
+            configuration,
+            std::make_unique<NewtonStep<Sys>>(),
+            std::make_unique<NewtonStep<Extended>>(),
+            {.without_root = without_root}};
+  }
 };
 template <class Sys> struct TimedSteps<Sys, TimeMode::prescribed> {
   using Extended = PrescribedStep<Sys, VariedTimeScale>;
   using Integrating = PrescribedIntegrator<Sys>;
   static Extended extended(const Sys& system) { return Extended(system, {}); }
-  static auto solver() { return std::make_unique<NewtonStep<PrescribedStep<Sys, TimeScaleStep>>>(); }
+  static Integrating begun(const Sys& system, const State<typename Sys::GroupoidType>& start,
+                           const ArrowOf<typename Sys::GroupoidType>& configuration, WithoutRoot) {
+    return {system, start, configuration, std::make_unique<NewtonStep<Sys>>(),
+            std::make_unique<NewtonStep<PrescribedStep<Sys, TimeScaleStep>>>()};
+  }
 };
 
 }  // namespace detail
@@ -80,8 +98,9 @@ class LinearisedTimedMotion final : public LinearisedMotion {
   static constexpr int size = 2 * n + 2 + (prescribed ? 1 : 0);
 
   LinearisedTimedMotion(const Sys& system, const State<G>& start, const ArrowOf<G>& configuration,
-                        const std::vector<std::string>& parameters, ObserveTimedNode<Sys> observe)
-      : integrator_(system, start, configuration, std::make_unique<NewtonStep<Sys>>(), Steps::solver()),
+                        const std::vector<std::string>& parameters, ObserveTimedNode<Sys> observe,
+                        WithoutRoot without_root = WithoutRoot::stop)
+      : integrator_(Steps::begun(system, start, configuration, without_root)),
         in_part_(system, std::make_unique<NewtonStep<Sys>>()),
         extended_(Steps::extended(system)),
         places_(places_of_parameters(extended_.base, parameters)),
@@ -100,7 +119,20 @@ class LinearisedTimedMotion final : public LinearisedMotion {
   const TrajectoryPoint<Sys>& point() const { return integrator_.point(); }
   double time() const override { return point().time; }
   bool has_equal_steps() const override { return false; }
-  StepReport advance() override { return integrator_.advance(); }
+  StepReport advance() override {
+    const long before = without_root();
+    const StepReport report = integrator_.advance();
+    has_root_ = without_root() == before;
+    return report;
+  }
+  /// Steps so far whose energy had no root.
+  long without_root() const {
+    if constexpr (prescribed) {
+      return 0;
+    } else {
+      return integrator_.without_root();
+    }
+  }
 
   bool linearise() override {
     const double h = point().step_size;
@@ -120,7 +152,10 @@ class LinearisedTimedMotion final : public LinearisedMotion {
       }
       epsilon_by_start(last) = point().index == 1 ? 0 : 1;
     }
-    if (point().index == 1) give_size();
+    if (point().index == 1)
+      begin_with_size();
+    else if (!has_root_)
+      give_size();
     arrange(epsilon_by_unknowns, epsilon_by_start);
     return stage_.factor();
   }
@@ -177,12 +212,16 @@ class LinearisedTimedMotion final : public LinearisedMotion {
       return {{times, step.arrow}, step.multipliers};
     }
   }
-  /// Of a given size: t1 - t0 = h and nu = 0 in place of the equations of time and size, and p_t = F+_t, which is p_t
-  /// + (F+ - F-)_t and what the equation of time is short of.
-  void give_size() {
+  /// Of a given size, and p_t = F+_t, which is p_t + (F+ - F-)_t and what the equation of time is short of.
+  void begin_with_size() {
     LinearStep& step = extended_step_;
     step.end_by_unknowns.row(extended_time_momentum) += step.equations_by_unknowns.row(time_equation);
     step.end_by_start.row(extended_time_momentum) += step.equations_by_start.row(time_equation);
+    give_size();
+  }
+  /// t1 - t0 = h and nu = 0 in place of the equations of time and size.
+  void give_size() {
+    LinearStep& step = extended_step_;
     const auto clear = [&](int equation) {
       step.equations_by_unknowns.row(equation).setZero();
       step.equations_by_start.row(equation).setZero();
@@ -226,6 +265,7 @@ class LinearisedTimedMotion final : public LinearisedMotion {
   ObserveTimedNode<Sys> observe_;
   LinearStep extended_step_{0, 0, 0};  ///< of (t, v, p_t, mu), theta and epsilon
   LinearStep stage_;
+  bool has_root_ = true;  ///< the last step
   bool compared_ = false;
 };
 

@@ -8,17 +8,19 @@
 ///         kepler, {{1, 0}, {0, 1.2}}, [](const auto& node) { return node.time; }, {.steps = 200});
 ///
 /// Rows of the end are (v, mu, t, p_t), after them epsilon where steps are prescribed; (v, mu, t, rho), rho the density
-/// of steps, where they are controlled; columns of the start (v, mu). With the momentum of time p_t the matrix pulls
-/// the form of the extended phase space back to that of the start, for adaptive steps; prescribed ones add what epsilon
-/// depends on the start (linearised_timed_motion.hpp).
+/// of steps, where they are controlled; (v, mu, t, E, s) in transformed time; columns of the start (v, mu). With the
+/// momentum of time p_t the matrix pulls the form of the extended phase space back to that of the start, for adaptive
+/// steps; prescribed ones add what epsilon depends on the start (linearised_timed_motion.hpp).
 ///
-/// Requirements and errors are those of LinearisedTimedMotion and LinearisedControlledMotion; an integral over the run,
+/// Requirements and errors are those of LinearisedTimedMotion, LinearisedControlledMotion and
+/// LinearisedTransformedMotion, here by steps of order two; an integral over the run,
 /// whose nodes' weights vary, is refused (std::invalid_argument). Nothing is taken past a step without root: its status
 /// is `no_step`.
 
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 #include <lagroid/solvers/sensitivity/times/linearised_controlled_motion.hpp>
 #include <lagroid/solvers/sensitivity/times/linearised_timed_motion.hpp>
+#include <lagroid/solvers/sensitivity/times/linearised_transformed_motion.hpp>
 
 #include <utility>
 
@@ -26,12 +28,14 @@ namespace lagroid {
 
 /// Whether runs whose steps vary in this way have derivatives.
 template <class Sys, TimeMode mode>
-concept TimedDerivatives = VaryingSteps<Sys, mode> ||(mode == TimeMode::controlled && VariedTimeScale<Sys>);
+concept TimedDerivatives = VaryingSteps<Sys, mode> ||(mode == TimeMode::controlled && VariedTimeScale<Sys>) ||
+                           (mode == TimeMode::transformed && VariedAttraction<Sys>);
 
 namespace detail {
 
 template <class Sys, TimeMode mode> struct TimedMotion { using Type = LinearisedTimedMotion<Sys, mode>; };
 template <class Sys> struct TimedMotion<Sys, TimeMode::controlled> { using Type = LinearisedControlledMotion<Sys>; };
+template <class Sys> struct TimedMotion<Sys, TimeMode::transformed> { using Type = LinearisedTransformedMotion<Sys>; };
 
 }  // namespace detail
 

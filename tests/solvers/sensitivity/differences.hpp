@@ -48,6 +48,16 @@ struct EndOfRun {
   }
 };
 
+/// Where its time has derivatives.
+struct EndAndTime {
+  template <class Node> VariedVector operator()(const Node& node) const {
+    const VariedVector end = EndOfRun()(node);
+    VariedVector out(end.size() + 1);
+    out << end, node.time;
+    return out;
+  }
+};
+
 /// The directions (displacement, momentum, parameters) of a motion that may have more states.
 inline Eigen::MatrixXd directions_of_start(const LinearisedMotion& motion, int states) {
   const int parameters = motion.parameters();

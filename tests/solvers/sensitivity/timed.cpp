@@ -1,9 +1,12 @@
 // Derivatives of runs whose steps vary: adaptive ones, which keep the discrete energy, and prescribed ones.
 
+#include "differences.hpp"
 #include "held_sizes.hpp"
 
 #include <lagroid/solvers/sensitivity/times/timed_sensitivities.hpp>
 #include <lagroid/systems/kepler.hpp>
+#include <lagroid/systems/pendulums/driven_pendulum.hpp>
+#include <lagroid/systems/pendulums/pendulum.hpp>
 #include <lagroid/systems/rotations/rigid_body.hpp>
 
 #include <gtest/gtest.h>
@@ -206,6 +209,38 @@ TEST(TimedSensitivities, AreSymplecticOnTheExtendedPhaseSpace) {
   const Eigen::MatrixXd places = a.topRows(4);
   EXPECT_GT((places.transpose() * form(false) * places - form(false)).norm(), 1e-3)
       << "at the same step it is not at one time";
+}
+
+template <class Sys> RunFrom<Sys> swinging(double angle, double momentum, double h, std::vector<std::string> names) {
+  RunFrom<Sys> out{Sys(), {Vector<double, 1>(angle), Vector<double, 1>(momentum)}, {}, std::move(names)};
+  out.system.h = h;
+  out.configuration = Pair<1>::unit(out.start.object);
+  return out;
+}
+auto going_on = []<class Sys>(const RunFrom<Sys>& from) {
+  return std::make_unique<LinearisedTimedMotion<Sys, TimeMode::adaptive>>(
+      from.system, from.start, from.configuration, from.names, EndAndTime(), WithoutRoot::constant);
+};
+/// By steps of the first one's size, which are the same steps of all runs that a difference is of.
+TEST(TimedSensitivities, GoOnWhereTheEnergyHasNoRoot) {
+  const RunFrom<Pendulum> from = swinging<Pendulum>(0, 2.5, 0.05, {"mass", "length"});
+  for (const long count : {20L, 40L}) {
+    const auto motion = going_on(from);
+    for (long k = 0; k < count; ++k) ASSERT_TRUE(motion->advance().converged());
+    EXPECT_GT(motion->without_root(), 5);
+    EXPECT_LT(motion->without_root(), count - 5);
+    expect_exact_derivatives(from, going_on, count);
+  }
+  RunFrom<DrivenPendulum> driven = swinging<DrivenPendulum>(0, 2.5, 0.05, {"mass", "torque", "frequency"});
+  driven.system.torque = 0.05;
+  driven.system.frequency = 0.7;
+  const auto motion = going_on(driven);
+  for (long k = 0; k < 20; ++k) ASSERT_TRUE(motion->advance().converged());
+  EXPECT_GT(motion->without_root(), 0);
+  expect_exact_derivatives(driven, going_on, 20);
+  EXPECT_THROW((LinearisedTimedMotion<Pendulum, TimeMode::adaptive>(from.system, from.start, from.configuration, {},
+                                                                    EndAndTime(), WithoutRoot::controlled)),
+               std::invalid_argument);
 }
 
 TEST(TimedSensitivities, SayWhereThereIsNoStep) {
