@@ -15,6 +15,7 @@
 /// Source: [G] 6.1 for the left-trivialised differentials.
 
 #include <lagroid/core/continuous/curve_point.hpp>
+#include <lagroid/core/scalars/elementary.hpp>
 
 #include <Eigen/LU>
 
@@ -206,8 +207,10 @@ class MatrixGroup : public LieGroupoid<Derived, Dimension> {
     return out;
   }
 
-  /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is.
+  /// g (I + W + W^2/2) where that is tau(w) to round-off, as in a corrector it is. Its derivatives are not those of
+  /// tau to round-off, and with a scalar that carries any it is not taken.
   template <class T> LAGROID_INLINE static Matrix<T, N, N> extend(const Matrix<T, N, N>& g, const Algebra<T>& w) {
+    if constexpr (Differentiated<T>) return g * tau(Object<T>{}, w);
     const auto square = value_of(w.squaredNorm());
     const auto far = square > T(1e-11);
     const auto near = square < T(1e-17);

@@ -1,4 +1,5 @@
 // exp, log, Cayley and their differentials: against their definitions, near 0 and near pi.
+#include <lagroid/core/scalars/second_jet.hpp>
 #include <lagroid/groupoids/groups/se2.hpp>
 #include <lagroid/groupoids/groups/se3.hpp>
 #include <lagroid/groupoids/groups/so2.hpp>
@@ -45,6 +46,28 @@ template <class G> class GroupMaps : public ::testing::Test {
 
 using Groups = ::testing::Types<SO2, SO3, SE2, SE3>;
 TYPED_TEST_SUITE(GroupMaps, Groups);
+
+// However small the displacement, where the arrow itself is linear in it to round-off.
+TYPED_TEST(GroupMaps, ExtendedArrowsHaveTheDerivativesOfTau) {
+  constexpr int n = TypeParam::dimension;
+  using S = SecondJet<double, n>;
+  const auto g = TypeParam::tau({}, this->random(1.0));
+  for (const double size : {0.0, 1e-9, 1e-6, 0.1}) {
+    const auto at = (size * this->random(1.0)).eval();
+    Vector<S, n> w;
+    for (int i = 0; i < n; ++i) w(i) = S::variable(at(i), i);
+    const auto arrow = g.template cast<S>().eval();
+    const auto extended = TypeParam::extend(arrow, w);
+    const auto composed = (arrow * TypeParam::tau({}, w)).eval();
+    for (int k = 0; k < extended.size(); ++k) {
+      EXPECT_NEAR(extended(k).value, composed(k).value, 1e-15);
+      for (int i = 0; i < n; ++i) {
+        EXPECT_NEAR(extended(k).gradient(i), composed(k).gradient(i), 1e-14) << size;
+        for (int j = 0; j < n; ++j) EXPECT_NEAR(extended(k).hessian(i, j), composed(k).hessian(i, j), 1e-13) << size;
+      }
+    }
+  }
+}
 
 TYPED_TEST(GroupMaps, HatAndVeeAreInverse) {
   const auto xi = this->random(2.0);
