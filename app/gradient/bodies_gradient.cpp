@@ -137,18 +137,8 @@ std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, con
   const auto momenta = Eigen::Index(3 * (motion.state().momentum.size() + motion.state().spin.size()));
   std::vector<ObservedEvent> out;
   for (const Event& event : events) {
-    if (!event.set.empty())
-      throw std::invalid_argument(fmt::format(
-          "event \"{}\": of bodies, a run whose numbers change on the way has no derivatives here; leave it out",
-          event.name));
     const auto texts = std::make_shared<EventExpressions>(event, observed, int(event.kick.size()));
-    ObservedEvent smooth{.name = event.name,
-                         .when = event.when,
-                         .function = [texts](const VariedVector& seen) { return texts->when(seen); },
-                         .direction = event.direction,
-                         .then = event.then,
-                         .count = event.count};
-    smooth.tolerance = std::max(event.tolerance, smooth.tolerance);
+    ObservedEvent smooth = observed_event(event, texts);
     if (!event.kick.empty())
       smooth.kick = [texts, momenta, places = places_of_kick(event.body, motion, bodies)](const VariedVector& seen) {
         VariedVector by = VariedVector::Constant(momenta, V(0));
@@ -187,25 +177,6 @@ std::string why_not_changed(const Section& scene, const SceneNumber& number,
     }
   }
   return why;
-}
-
-/// Refuses numbers along which an event at the start would happen there or not, of the start and of parameters, in the
-/// order of why_none(parameters). Returns the places of those of the start.
-std::vector<int> refuse_at_start(
-    const std::function<std::vector<std::string>(const std::vector<std::string>& parameters)>& why_none,
-    GradientSubject& subject) {
-  std::vector<std::string> parameters, names;
-  for (const GradientName& each : subject.parameters) parameters.push_back(each.name);
-  for (const GradientName& each : subject.start) names.push_back("initial." + each.name);
-  for (const std::string& each : parameters) names.push_back("parameters." + each);
-  const std::vector<std::string> why = why_none(parameters);
-  std::vector<int> of_start;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (why[i].empty()) continue;
-    subject.refused.emplace_back(names[i], why[i]);
-    if (i < subject.start.size()) of_start.push_back(int(i));
-  }
-  return of_start;
 }
 
 }  // namespace
@@ -319,41 +290,7 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   if (read.extent.events.empty()) return out;
   require_events(read.extent.events, *read.motion);
   const std::vector<ObservedEvent> events = observed_events(read.extent.events, out.observed, motion, bodies);
-  for (const ObservedEvent& event : events) out.events.push_back(event.name);
-  out.begins_through_events = std::none_of(events.begin(), events.end(),
-                                           [](const ObservedEvent& each) { return each.then == Event::Then::stop; });
-  out.begin = [begin, events](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
-    return std::make_unique<MotionThroughEvents>(begin(parameters, nudges), events);
-  };
-  out.begin_along = [](LinearisedMotion& begun_motion, const Eigen::MatrixXd& directions) {
-    dynamic_cast<MotionThroughEvents&>(begun_motion).begin_along(directions);
-  };
-  const auto all_directions = [begun_by = out.begun_by](const MotionThroughEvents& of,
-                                                        const std::vector<std::string>& parameters,
-                                                        const std::vector<Nudge>& nudges) {
-    const Eigen::Index states = of.states(), all = states + of.parameters();
-    Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(all, all);
-    if (begun_by) directions.topRows(states) = begun_by(parameters, nudges);
-    return directions;
-  };
-  const std::vector<int> refused_start = refuse_at_start(
-      [&](const std::vector<std::string>& parameters) {
-        MotionThroughEvents first(begin(parameters, {}), events);
-        return first.why_none_along(all_directions(first, parameters, {}));
-      },
-      out);
-  out.through_events = [begin, events, all_directions, refused_start, steps = out.steps](
-                           const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
-                           ThroughEvents by) {
-    MotionThroughEvents through(begin(parameters, nudges), events);
-    const Eigen::Index states = through.states(), of_numbers = through.parameters();
-    Eigen::MatrixXd directions = all_directions(through, parameters, nudges);
-    for (const int each : refused_start) directions.col(each).setZero();
-    const Eigen::Index asked = by == ThroughEvents::start_too    ? states + of_numbers
-                               : by == ThroughEvents::parameters ? of_numbers
-                                                                 : 0;
-    return through.run(steps, directions.rightCols(asked), node);
-  };
+  go_through_events(begin, events, out);
   return out;
 }
 

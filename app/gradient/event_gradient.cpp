@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -157,6 +159,27 @@ std::vector<std::size_t> which_happened(const EventSensitivities& run) {
   return out;
 }
 
+/// How fast each column takes some event to the nearest node, over how far it is from there: where it passes it the
+/// partial step is one from another node, and the derivative has a kink there of the order of the method.
+Eigen::ArrayXd rates_of_passing_nodes(const EventSensitivities& run, const GradientColumns& columns,
+                                      LinearisedMotion& at_start) {
+  constexpr double nearest = 1e-7;  // of a step
+  const auto from_start = Eigen::Index(columns.start.size());
+  Eigen::ArrayXd out = Eigen::ArrayXd::Zero(from_start + Eigen::Index(columns.parameters.size()));
+  const double begun = at_start.time();
+  at_start.pass();
+  const double step = at_start.time() - begun;
+  for (const auto& each : run.happened) {
+    const double nodes = (each.time - begun) / step;
+    const double away = step * std::max(nearest, std::abs(nodes - std::round(nodes)));
+    for (Eigen::Index j = 0; j < from_start; ++j)
+      out(j) = std::max(out(j), std::abs(each.by_start(columns.start[std::size_t(j)])) / away);
+    for (Eigen::Index j = from_start; j < out.size(); ++j)
+      out(j) = std::max(out(j), std::abs(each.by_parameters(j - from_start)) / away);
+  }
+  return out;
+}
+
 /// The run as far as a node is asked for: one for each node, and one for the rest.
 class Runs {
  public:
@@ -176,6 +199,25 @@ class Runs {
   std::map<long, EventSensitivities> runs_;
 };
 
+/// Refuses numbers along which an event at the start would happen there or not, of the start and of parameters, in the
+/// order of why_none(parameters). Returns the places of those of the start.
+std::vector<int> refuse_at_start(
+    const std::function<std::vector<std::string>(const std::vector<std::string>& parameters)>& why_none,
+    GradientSubject& subject) {
+  std::vector<std::string> parameters, names;
+  for (const GradientName& each : subject.parameters) parameters.push_back(each.name);
+  for (const GradientName& each : subject.start) names.push_back("initial." + each.name);
+  for (const std::string& each : parameters) names.push_back("parameters." + each);
+  const std::vector<std::string> why = why_none(parameters);
+  std::vector<int> of_start;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (why[i].empty()) continue;
+    subject.refused.emplace_back(names[i], why[i]);
+    if (i < subject.start.size()) of_start.push_back(int(i));
+  }
+  return of_start;
+}
+
 }  // namespace
 
 EventExpressions::EventExpressions(const Event& event, const std::vector<GradientName>& observed, int momenta)
@@ -189,6 +231,78 @@ EventExpressions::EventExpressions(const Event& event, const std::vector<Gradien
     refuse(fmt::format("its kick has {} numbers, the momentum has {}", event.kick.size(), momenta));
   for (const std::string& text : event.kick) kick.push_back(smooth(text, event.name, names_in(observed)));
   for (const auto& [name, text] : event.set) set.emplace_back(name, smooth(text, event.name, names_in(observed)));
+}
+
+ObservedEvent observed_event(const Event& event, const std::shared_ptr<EventExpressions>& texts) {
+  if (!event.set.empty())
+    throw std::invalid_argument(
+        fmt::format("event \"{}\": what it sets has derivatives in runs of systems by equal variational steps alone; "
+                    "leave it out",
+                    event.name));
+  ObservedEvent out{.name = event.name,
+                    .when = event.when,
+                    .function = [texts](const VariedVector& seen) { return texts->when(seen); },
+                    .direction = event.direction,
+                    .then = event.then,
+                    .count = event.count};
+  out.tolerance = std::max(event.tolerance, out.tolerance);
+  return out;
+}
+
+std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, const std::vector<GradientName>& observed,
+                                           int momenta) {
+  std::vector<ObservedEvent> out;
+  for (const Event& event : events) {
+    const auto texts = std::make_shared<EventExpressions>(event, observed, momenta);
+    ObservedEvent& smooth = out.emplace_back(observed_event(event, texts));
+    if (event.kick.empty()) continue;
+    smooth.kick = [texts](const VariedVector& seen) {
+      VariedVector by(Eigen::Index(texts->kick.size()));
+      for (std::size_t k = 0; k < texts->kick.size(); ++k) by(Eigen::Index(k)) = texts->kick[k](seen);
+      return by;
+    };
+  }
+  return out;
+}
+
+void go_through_events(const BeginCuttable& begin, const std::vector<ObservedEvent>& events, GradientSubject& subject) {
+  for (const ObservedEvent& event : events) subject.events.push_back(event.name);
+  subject.begins_through_events = std::none_of(
+      events.begin(), events.end(), [](const ObservedEvent& each) { return each.then == Event::Then::stop; });
+  subject.begin = [begin, events](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+    return std::make_unique<MotionThroughEvents>(begin(parameters, nudges), events);
+  };
+  subject.begin_along = [](LinearisedMotion& begun_motion, const Eigen::MatrixXd& directions) {
+    dynamic_cast<MotionThroughEvents&>(begun_motion).begin_along(directions);
+  };
+  const auto all_directions = [begun_by = subject.begun_by, starts = Eigen::Index(subject.start.size())](
+                                  const MotionThroughEvents& of, const std::vector<std::string>& parameters,
+                                  const std::vector<Nudge>& nudges) {
+    const Eigen::Index of_numbers = of.parameters();
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(of.states() + of_numbers, starts + of_numbers);
+    directions.bottomRightCorner(of_numbers, of_numbers).setIdentity();
+    const Eigen::MatrixXd begun =
+        begun_by ? begun_by(parameters, nudges) : Eigen::MatrixXd::Identity(starts, directions.cols());
+    directions.topRows(begun.rows()) = begun;
+    return directions;
+  };
+  const std::vector<int> refused_start = refuse_at_start(
+      [&](const std::vector<std::string>& parameters) {
+        MotionThroughEvents first(begin(parameters, {}), events);
+        return first.why_none_along(all_directions(first, parameters, {}));
+      },
+      subject);
+  subject.through_events = [begin, events, all_directions, refused_start, steps = subject.steps](
+                               const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
+                               ThroughEvents by) {
+    MotionThroughEvents through(begin(parameters, nudges), events);
+    Eigen::MatrixXd directions = all_directions(through, parameters, nudges);
+    for (const int each : refused_start) directions.col(each).setZero();
+    const Eigen::Index asked = by == ThroughEvents::start_too    ? directions.cols()
+                               : by == ThroughEvents::parameters ? Eigen::Index(through.parameters())
+                                                                 : 0;
+    return through.run(steps, directions.rightCols(asked), node);
+  };
 }
 
 void require_events(const std::vector<Event>& events, Motion& motion) try {
@@ -264,8 +378,6 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
       by_start ? whole.observed_by_start
                : subject.through_events({}, {}, -1, ThroughEvents::start_too).observed_by_start;
   set_growth(out, growth.factor(observed_by_start * growth.along()));
-  // Where an event passes a node its partial step is one from another node, and the derivative has a kink there of the
-  // order of the method: that is seen by differences so wide that one of both runs has it in another step.
   if (check)
     compare_with_differences(
         subject, columns, out,
@@ -273,7 +385,8 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
         {.where_none = "end early or have other events",
          .sizes = sizes,
          .growth = out.growth,
-         .tolerance = subject.tolerance});
+         .tolerance = subject.tolerance,
+         .rates = rates_of_passing_nodes(whole, columns, *subject.begin({}, {}))});
   return out;
 }
 

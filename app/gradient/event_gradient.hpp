@@ -10,11 +10,15 @@
 #include "gradient_table.hpp"
 
 #include <lagroid/run/events/event.hpp>
+#include <lagroid/run/events/motion_through_events.hpp>
 #include <lagroid/run/expressions/varied_expression.hpp>
 #include <lagroid/run/motion/motion.hpp>
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lagroid::app {
@@ -28,6 +32,19 @@ struct EventExpressions {
   std::vector<VariedExpression> kick;
   std::vector<std::pair<std::string, VariedExpression>> set;  ///< numbers, by the names of what they are set to be
 };
+
+/// The event with these texts, without its kick and its switches. Throws std::invalid_argument for one that sets
+/// numbers.
+ObservedEvent observed_event(const Event& event, const std::shared_ptr<EventExpressions>& texts);
+/// The events of a scene of one vector of so many momenta. Throws std::invalid_argument for one that has no derivative.
+std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, const std::vector<GradientName>& observed,
+                                           int momenta);
+
+/// Leads the motions of a subject that has all but its events through these: `begin` begins motions as the subject's
+/// does.
+using BeginCuttable = std::function<std::unique_ptr<CuttableMotion>(const std::vector<std::string>& parameters,
+                                                                    const std::vector<Nudge>& nudges)>;
+void go_through_events(const BeginCuttable& begin, const std::vector<ObservedEvent>& events, GradientSubject& subject);
 
 GradientTable differentiate_through_events(const GradientSubject& subject, const std::vector<std::string>& of,
                                            const std::vector<std::string>& by, bool check);

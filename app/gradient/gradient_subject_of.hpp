@@ -218,23 +218,32 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     differentiating::find_refused_reduced(out);
   else
     find_refused(out);
-  if (!value.extent.events.empty()) {
+  if (value.extent.events.empty()) return out;
+  if (by_explicit_steps_in_parts(value)) {
+    require_events(value.extent.events, *prepared.begin());
+    const auto in_parts = [begin = out.begin](const std::vector<std::string>& parameters,
+                                              const std::vector<Nudge>& nudges) {
+      return std::unique_ptr<CuttableMotion>(&dynamic_cast<CuttableMotion&>(*begin(parameters, nudges).release()));
+    };
+    go_through_events(in_parts, observed_events(value.extent.events, out.observed, n), out);
+  } else {
     if (!by_single_steps(value))
       scene.fail(
           "event",
-          "gradient goes through events by equal steps of order two; leave out mode, method, order, composition and "
-          "reduce, or them");
+          "gradient goes through events by equal steps of order two, splittings and runge-kutta; leave out mode, "
+          "method, order and composition, or them");
     if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
       require_events(value.extent.events, *prepared.begin());
       const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);
       for (const SmoothEvent<Sys>& event : events) out.events.push_back(event.name);
-      out.through_events = [started, observe, events, steps = out.steps](const std::vector<std::string>& parameters,
-                                                                         const std::vector<Nudge>& nudges, long node,
-                                                                         ThroughEvents) {
+      out.through_events = [started, observe, events, steps = out.steps, stated = prepared.stated](
+                               const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
+                               ThroughEvents) {
         const auto from = started(nudges);
-        SensitivityOptions<Sys> options{.steps = steps, .parameters = parameters, .configuration = from.configuration};
+        SensitivityOptions<Sys> options{.steps = steps, .parameters = parameters};
         options.observed.node = node;
-        EventSensitivities run = event_sensitivities<Sys>(from.system, from.start, events, options, observe);
+        EventSensitivities run =
+            event_sensitivities<Sys>(from.system, variational_integrator(*stated, from), events, options, observe);
         if constexpr (StartsByVelocity<Sys>) follow_start(slope_of_start(from.system, from.start, parameters), run);
         return run;
       };

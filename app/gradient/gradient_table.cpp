@@ -164,8 +164,9 @@ Eigen::MatrixXd directions_of(const GradientSubject& subject, const GradientColu
     return out;
   }
   const Eigen::MatrixXd begun = subject.begun_by(names_of(subject, columns), nudges);
-  for (Eigen::Index j = 0; j < from_start; ++j) out.col(j).head(states) = begun.col(columns.start[std::size_t(j)]);
-  out.topRightCorner(states, by_parameters) = begun.rightCols(by_parameters);
+  for (Eigen::Index j = 0; j < from_start; ++j)
+    out.col(j).head(begun.rows()) = begun.col(columns.start[std::size_t(j)]);
+  out.topRightCorner(begun.rows(), by_parameters) = begun.rightCols(by_parameters);
   return out;
 }
 

@@ -97,11 +97,26 @@ std::unique_ptr<LinearisedMotion> own_motion(int order, const Started<Sys>& from
 
 }  // namespace differentiating
 
-/// Whether steps are those of the discrete Lagrangian, of equal size and of one arrow each.
+/// Whether steps are those of the discrete Lagrangian, of equal size and of one arrow each; reduced ones are, too.
 template <DiscreteSystem Sys> bool by_single_steps(const StatedInitialValue<Sys>& value) {
   const IntegratorOptions& options = value.choice.options;
   return options.mode == TimeMode::fixed && options.fixed == StepKind::variational &&
-         options.composition.stages() == 1 && !value.reduced && value.own_order == 0;
+         options.composition.stages() == 1 && value.own_order == 0;
+}
+/// The integrator of variational steps. Those of a reduced run are those of the full one, found on a smaller groupoid:
+/// at their solutions the equations of the full system hold, and its derivatives are theirs.
+template <DiscreteSystem Sys>
+std::unique_ptr<Integrator<Sys>> variational_integrator(const StatedInitialValue<Sys>& value,
+                                                        const Started<Sys>& from) {
+  if (value.reduced) return value.reduced(from.system, from.start, from.configuration);
+  return differentiating::integrator_of(from, value.choice.options.composition);
+}
+
+/// Whether they are explicit ones that can be made in part: compositions of flows, or Runge-Kutta steps.
+template <DiscreteSystem Sys> bool by_explicit_steps_in_parts(const StatedInitialValue<Sys>& value) {
+  const IntegratorOptions& options = value.choice.options;
+  return options.mode == TimeMode::fixed && !value.reduced &&
+         (options.fixed == StepKind::splitting || options.fixed == StepKind::runge_kutta);
 }
 
 template <DiscreteSystem Sys>
@@ -165,11 +180,8 @@ std::unique_ptr<LinearisedMotion> motion_of_steps(const StatedInitialValue<Sys>&
     return differentiating::timed_motion<TimeMode::transformed>(from, parameters, observe, options.composition);
   if (options.fixed != StepKind::variational)
     return differentiating::explicit_motion(options, from, parameters, observe);
-  // Steps of a reduced run are those of the full one, found on a smaller groupoid: at their solutions the equations of
-  // the full system hold, and its derivatives are theirs.
-  auto integrator = value.reduced ? value.reduced(from.system, from.start, from.configuration)
-                                  : differentiating::integrator_of(from, options.composition);
-  return std::make_unique<LinearisedMotionOf<Sys>>(from.system, std::move(integrator), parameters, observe);
+  return std::make_unique<LinearisedMotionOf<Sys>>(from.system, variational_integrator(value, from), parameters,
+                                                   observe);
 }
 
 }  // namespace lagroid::app

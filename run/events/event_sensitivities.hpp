@@ -457,16 +457,25 @@ template <DiscreteSystem Sys> class EventPropagation {
 }  // namespace detail
 
 /// By equal steps of order two, from the start until the last step or the event that stops the run. `observe`, if any,
-/// is looked at where events happen and at the end, or at the node that options.observed asks for.
+/// is looked at where events happen and at the end, or at the node that options.observed asks for. The integrator is at
+/// its start and makes steps of one arrow each, also in part, that solve the equations of the system: reduced ones do,
+/// too, where nothing is changed on the way.
+template <DiscreteSystem Sys>
+requires StepDependent<Sys> || TimeDependent<Sys> EventSensitivities event_sensitivities(
+    const Sys& system, std::unique_ptr<Integrator<Sys>> integrator, const std::vector<SmoothEvent<Sys>>& events,
+    const SensitivityOptions<Sys>& options = {}, ObserveEventNode<Sys> observe = {}) {
+  if (options.observed.kind == Observed::Kind::integral)
+    throw std::invalid_argument("events leave no equal steps over which to integrate: observe a node, or the end");
+  detail::EventPropagation<Sys> motion(system, std::move(integrator), events, options.parameters, std::move(observe),
+                                       options.observed.node);
+  return motion.run(options.steps);
+}
 template <DiscreteSystem Sys>
 requires StepDependent<Sys> || TimeDependent<Sys> EventSensitivities event_sensitivities(
     const Sys& system, const State<typename Sys::GroupoidType>& start, const std::vector<SmoothEvent<Sys>>& events,
     const SensitivityOptions<Sys>& options = {}, ObserveEventNode<Sys> observe = {}) {
-  if (options.observed.kind == Observed::Kind::integral)
-    throw std::invalid_argument("events leave no equal steps over which to integrate: observe a node, or the end");
-  detail::EventPropagation<Sys> motion(system, detail::newton_integrator(system, start, options), events,
-                                       options.parameters, std::move(observe), options.observed.node);
-  return motion.run(options.steps);
+  return event_sensitivities<Sys>(system, detail::newton_integrator(system, start, options), events, options,
+                                  std::move(observe));
 }
 
 }  // namespace lagroid

@@ -194,7 +194,7 @@ Eigen::VectorXd MotionThroughEvents::kick_of(const Piece& piece) const {
   VariedVector all(seen.size() + 1);
   all(0) = time();
   for (Eigen::Index i = 0; i < seen.size(); ++i) all(i + 1) = seen(i);
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(states() / 2);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(motion_->momenta());
   for (const std::size_t i : piece.events) {
     if (!events_[i].kick) continue;
     const VariedVector by = events_[i].kick(all);

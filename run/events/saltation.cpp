@@ -132,7 +132,7 @@ bool MotionThroughEvents::lead_to(const Piece& piece, Derivatives& to) {
 }
 
 Eigen::MatrixXd MotionThroughEvents::kick_by(const Piece& piece) const {
-  const Eigen::Index n = states() / 2;
+  const Eigen::Index n = motion_->momenta();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, time_row() + 2);
   out.middleCols(n, n).setIdentity();
   for (const std::size_t i : piece.events) {
@@ -199,7 +199,7 @@ bool MotionThroughEvents::follow(Derivatives& step, const AtPiece* tell) {
     last = &piece;
     moves = moves_;
     if (piece.changes) {
-      step.push_back(std::make_shared<ReplacedRows>(states() / 2, kick_by(piece)));
+      step.push_back(std::make_shared<ReplacedRows>(motion_->momenta(), kick_by(piece)));
       motion_->kick(kick_of(piece));
       if (const Switching what = switching_of(piece); !what.empty()) follow_switch(piece, what, step);
       motion_->keep();

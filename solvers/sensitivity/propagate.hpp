@@ -48,8 +48,10 @@ struct Propagated {
   /// Forward: derivatives of the functions along the directions. Backward: by (v, mu, theta) of the start. A row for
   /// each function.
   Eigen::MatrixXd derivatives;
-  Eigen::MatrixXd end;    ///< forward: the directions at the end, states and below them parameters
-  double growth = 1;      ///< the largest factor, on the way, by which derivatives grew (growth/growth.hpp)
+  Eigen::MatrixXd end;  ///< forward: the directions at the end, states and below them parameters
+  /// The largest factor, on the way, by which errors of the start grew (growth/growth.hpp), whatever parameters there
+  /// are; where forward directions are all of parameters, by which these did.
+  double growth = 1;
   long steps_solved = 0;  ///< in all, those computed again too
   long states_kept = 0;   ///< at most, at a time
 

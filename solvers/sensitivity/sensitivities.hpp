@@ -51,7 +51,7 @@ struct Sensitivities {
   std::vector<std::string> parameters;  ///< mass, inertia.0, ...: the columns of by_parameters
   Eigen::MatrixXd by_start;             ///< 2 n x 2 n, of (displacement, momentum)
   Eigen::MatrixXd by_parameters;
-  double growth = 1;       ///< the largest factor on the way
+  double growth = 1;       ///< the largest factor, on the way, by which errors of the start grew
   double digits_left = 0;  ///< of sixteen, by the growth
 
   bool converged() const { return status == SolveStatus::converged; }

@@ -31,7 +31,8 @@ struct ValuesAreKnown {
   double tolerance = 0;  ///< of inner steps: to this, grown, runs beside each other are values of one function
   Eigen::ArrayXd conditions = {};   ///< by which rounding of each row grows beside; empty: not
   Eigen::ArrayXd derivatives = {};  ///< to which those of each row are known; empty: to more than differences are
-  Eigen::ArrayXd rates = {};  ///< of each column, at which it changes what rows do not show, over its size; empty: none
+  Eigen::ArrayXd rates = {};  ///< of each column, at which it changes what rows do not show, over its size, or takes an
+                              ///< event to a node, where derivatives have a kink; empty: none
 };
 
 /// The same, of one that has none for a reason of its own.

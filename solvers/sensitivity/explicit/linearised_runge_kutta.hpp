@@ -6,20 +6,41 @@
 ///     LinearisedRungeKutta<HeavyTop> motion(top, start, configuration, {"inertia"}, end_state);
 ///     const Propagated end = propagate_forward(motion, 100, directions);
 ///
-/// States are (v, mu, y), as many as coordinates of an arrow and momenta; directions of a start have y = 0. Requires
-/// `rates` over any scalar (HasVariedRates). Errors: those of LinearisedExplicit.
+/// States are (v, mu, y), as many as coordinates of an arrow and momenta; directions of a start have y = 0. Its steps
+/// can be cut (CuttableExplicit). Requires `rates` over any scalar (HasVariedRates). Errors: those of
+/// LinearisedExplicit.
 
 #include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/solvers/integrators/runge_kutta.hpp>
-#include <lagroid/solvers/sensitivity/explicit/linearised_explicit.hpp>
+#include <lagroid/solvers/sensitivity/explicit/cuttable_explicit.hpp>
 
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace lagroid {
 
 namespace detail {
+
+/// The system whose time passes at a rate.
+template <HasVariedRates Sys> struct RatesAtRate : Sys {
+  using G = typename Sys::GroupoidType;
+  static constexpr bool has_rate = true;
+
+  explicit RatesAtRate(const Sys& system) : Sys(system) {}
+  template <class S = double> RatesOver<G, S> rates(const State<G, S>& z) const {
+    const RatesOver<G, S> whole = Sys::rates(z);
+    if constexpr (std::is_same_v<S, double>) {
+      return whole;
+    } else {
+      const auto r = varied<S>(rate);
+      return {whole.velocity * r, whole.momentum * r};
+    }
+  }
+
+  double rate = 1;
+};
 
 template <HasVariedRates Sys> class RungeKuttaSteps : public RungeKuttaIntegrator<Sys> {
  public:
@@ -39,14 +60,17 @@ template <HasVariedRates Sys> class RungeKuttaSteps : public RungeKuttaIntegrato
 }  // namespace detail
 
 template <HasVariedRates Sys>
-class LinearisedRungeKutta final : public LinearisedExplicit<Sys, detail::RungeKuttaSteps<Sys>> {
+class LinearisedRungeKutta final
+    : public CuttableExplicit<Sys, detail::RatesAtRate<Sys>, detail::RungeKuttaSteps<detail::RatesAtRate<Sys>>> {
  public:
   using G = typename Sys::GroupoidType;
+  using System = detail::RatesAtRate<Sys>;
+  using Steps = detail::RungeKuttaSteps<System>;
 
   LinearisedRungeKutta(const Sys& system, const State<G>& start, const ArrowOf<G>& configuration,
                        const std::vector<std::string>& parameters, ObserveNode<Sys> observe)
-      : LinearisedExplicit<Sys, detail::RungeKuttaSteps<Sys>>(system, {system, start, configuration}, parameters,
-                                                              std::move(observe)) {}
+      : CuttableExplicit<Sys, System, Steps>(System(system), {System(system), start, configuration}, parameters,
+                                             std::move(observe)) {}
 };
 
 }  // namespace lagroid

@@ -7,19 +7,40 @@
 ///     LinearisedSplitting<Kepler> motion(kepler, start, unit, splittings::srkn6, {"strength"}, end_state);
 ///     const Propagated end = propagate_forward(motion, 100, directions);
 ///
-/// Requires flows that are templates on the scalar. Errors: those of LinearisedExplicit; std::invalid_argument for a
+/// Its steps can be cut (CuttableExplicit) where flows take times over the scalar, too (SplitInLanes).
+///
+/// Requires flows that are templates on the scalar. Errors: those of CuttableExplicit; std::invalid_argument for a
 /// composition that the system does not admit.
 
 #include <lagroid/solvers/integrators/splitting.hpp>
-#include <lagroid/solvers/sensitivity/explicit/linearised_explicit.hpp>
+#include <lagroid/solvers/sensitivity/explicit/cuttable_explicit.hpp>
 
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace lagroid {
 
 namespace detail {
+
+/// The system along whose flows time passes at a rate.
+template <SplitSystem Sys> struct FlowsAtRate : Sys {
+  using G = typename Sys::GroupoidType;
+  static constexpr bool has_rate = SplitInLanes<Sys, VariedNumber>;
+
+  explicit FlowsAtRate(const Sys& system) : Sys(system) {}
+  template <int Part, class S, class T>
+  FlowOf<G, S> flow(const T& t, const ObjectOf<G, S>& q, const Vector<S, G::dimension>& mu) const {
+    if constexpr (has_rate && std::is_same_v<S, VariedNumber>) {
+      return Sys::template flow<Part>(varied<S>(rate) * t, q, mu);
+    } else {
+      return Sys::template flow<Part>(t, q, mu);
+    }
+  }
+
+  double rate = 1;
+};
 
 template <SplitSystem Sys> class SplittingSteps : public SplittingIntegrator<Sys> {
  public:
@@ -43,15 +64,18 @@ template <SplitSystem Sys> class SplittingSteps : public SplittingIntegrator<Sys
 }  // namespace detail
 
 template <SplitSystem Sys>
-class LinearisedSplitting final : public LinearisedExplicit<Sys, detail::SplittingSteps<Sys>> {
+class LinearisedSplitting final
+    : public CuttableExplicit<Sys, detail::FlowsAtRate<Sys>, detail::SplittingSteps<detail::FlowsAtRate<Sys>>> {
  public:
   using G = typename Sys::GroupoidType;
+  using System = detail::FlowsAtRate<Sys>;
+  using Steps = detail::SplittingSteps<System>;
 
   LinearisedSplitting(const Sys& system, const State<G>& start, const ArrowOf<G>& configuration,
                       const Composition& composition, const std::vector<std::string>& parameters,
                       ObserveNode<Sys> observe)
-      : LinearisedExplicit<Sys, detail::SplittingSteps<Sys>>(system, {system, start, configuration, composition},
-                                                             parameters, std::move(observe)) {}
+      : CuttableExplicit<Sys, System, Steps>(System(system), {System(system), start, configuration, composition},
+                                             parameters, std::move(observe)) {}
 };
 
 }  // namespace lagroid

@@ -46,7 +46,9 @@ class CuttableMotion : public LinearisedMotion {
   virtual Eigen::VectorXd seen() const = 0;
   virtual NodeValues observe_in_part() const = 0;
 
-  /// Adds to the momentum, the second half of the states.
+  /// How many numbers momenta have; as many are before them among the states.
+  virtual int momenta() const { return states() / 2; }
+  /// Adds to them.
   virtual void kick(const Eigen::VectorXd& by) = 0;
   /// What a switch is to derivatives: of what it does to the momentum, and, by states, parameters and the time, of what
   /// was held until then and of what is held from then on. There are derivatives where the one makes the other vanish.

@@ -38,13 +38,16 @@ template <class Sys> struct RunFrom {
   }
 };
 
+inline VariedVector joined(const VariedVector& first, const VariedVector& then) {
+  VariedVector out(first.size() + then.size());
+  out << first, then;
+  return out;
+}
+
 /// The configuration and the momentum that is reported.
 struct EndOfRun {
   template <class Node> VariedVector operator()(const Node& node) const {
-    const VariedVector arrow = node.system.groupoid.coordinates_of_arrow(node.configuration);
-    VariedVector out(arrow.size() + node.momentum.size());
-    out << arrow, node.momentum;
-    return out;
+    return joined(node.system.groupoid.coordinates_of_arrow(node.configuration), node.momentum);
   }
 };
 
