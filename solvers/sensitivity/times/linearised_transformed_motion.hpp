@@ -186,9 +186,9 @@ template <VariedAttraction Sys> class LinearisedTransformedMotion final : public
   }
   /// Of the part of a step that takes this time, by Newton's method; none where there is none.
   std::optional<double> length_of(double duration) const {
-    constexpr int most_iterations = 30;
+    constexpr int at_most = 30;
     double length = -duration * system_.potential_energy(point().state.object);
-    for (int k = 0; k < most_iterations; ++k) {
+    for (int k = 0; k < at_most; ++k) {
       SplitMotion<Sys, VariedNumber> motion(
           system_, system_.groupoid.template cast_object<VariedNumber>(point().state.object),
           AlgebroidVector<G, VariedNumber>(point().state.momentum.template cast<VariedNumber>()));
