@@ -4,7 +4,7 @@
 ///
 ///     c(N) = c + C / N^2 + ...:    log2 (c(N) - c(2N)) / (c(2N) - c(4N)) = 2.
 ///
-/// Where inequalities are active switches fall between nodes, and the order is one of the envelope: then
+/// Where inequalities are active switches may fall between nodes, and the order is then one of the envelope:
 /// N^2 |c(N) - c(2N)| and N^2 |c(N) - c(4N)| are bounded by a multiple of the cost.
 ///
 ///     const auto found = solve_control(task, 100);
@@ -58,9 +58,10 @@ inline Law order_law(const double (&costs)[3], long stages, bool has_active_ineq
   const bool all_solved = std::isfinite(costs[0] + costs[1] + costs[2]);
   if (all_solved && std::max(first, second) <= 1e-9 * size)
     return control_law("the cost does not depend on the grid", 0, 0, 3);
-  if (!has_active_inequalities)
-    return control_law("the cost is of order two in the step",
-                       all_solved ? std::abs(std::log2(first / second) - 2) : HUGE_VAL, 0.25, 3);
+  const double off_two = all_solved ? std::abs(std::log2(first / second) - 2) : HUGE_VAL;
+  constexpr double about = 0.25;
+  if (!has_active_inequalities || off_two <= about)
+    return control_law("the cost is of order two in the step", off_two, about, 3);
   const double spread = std::max(first, std::abs(costs[0] - costs[2]));
   return control_law("the cost is of order two in envelope",
                      all_solved ? spread * double(stages) * double(stages) / size : HUGE_VAL, 100, 3);

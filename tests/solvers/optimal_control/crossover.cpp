@@ -133,6 +133,14 @@ TEST(ControlSolutions, SatisfyTheirLawsOnFinerGrids) {
   expect_laws_of(ControlTask<SwingUp>{{}, {{0, 0}, {std::numbers::pi, 0}}, 10});
 }
 
+/// However large, as along half an orbit: what falls by four from grid to grid is of order two.
+TEST(ControlSolutions, AreOfOrderTwoWhereTheirErrorsFallByFour) {
+  const double of_order_two[] = {1.16, 1.04, 1.01};
+  const double of_none[] = {1.16, 1.04, 1.10};
+  EXPECT_TRUE(laws::detail::order_law(of_order_two, 100, true).holds());
+  EXPECT_FALSE(laws::detail::order_law(of_none, 100, true).holds());
+}
+
 /// Euler's steps in place of the midpoint rule's.
 struct EulerPendulum : ControlSystem<EulerPendulum, Pair<2>, 1, 2> {
   template <class S> S cost(const PairArrow<S, 2>&, const Vector<S, 1>& u, const S& h) const { return h * u(0) * u(0); }
