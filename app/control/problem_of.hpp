@@ -192,19 +192,36 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
                                    key, can_cost ? "let time be the cost (parameters.cost = \"time\"), or " : "",
                                    in_phases ? "give the duration a range" : "leave out free"));
   }
+  static bool comes_back(const Posed& posed) {
+    return posed.task.system.groupoid.tau_inverse(posed.task.boundary).isZero(1e-12);
+  }
+  static bool went_to_nothing(const ControlPhase<Sys>& phase, const PhaseSteps& found) {
+    constexpr double nothing = 1e-3;  // of the first guess
+    return phase.duration_is_free && found.step * double(phase.stages) <= nothing * phase.duration;
+  }
+  /// Of motions that come back to their start none is the shortest: where there are others, these are meant.
+  static void leave_out_none(const Posed& posed, ControlSearch<Sys>& found) {
+    if (!comes_back(posed)) return;
+    const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
+    const auto is_none = [&](const ControlSolution<Sys>& each) {
+      for (std::size_t i = 0; i < phases.size(); ++i)
+        if (went_to_nothing(phases[i], each.trajectory.phases[i])) return true;
+      return false;
+    };
+    if (!std::all_of(found.minima.begin(), found.minima.end(), is_none)) std::erase_if(found.minima, is_none);
+  }
   /// Refuses a free duration that went to nothing, where it can be told why.
   static void require_time(const Section& scene, const Posed& posed, const ControlTrajectory<Sys>& found) {
-    constexpr double nothing = 1e-3;  // of the first guess
     const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
     for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i) {
       const ControlPhase<Sys>& phase = phases[i];
-      if (!phase.duration_is_free || found.phases[i].step * double(phase.stages) > nothing * phase.duration) continue;
+      if (!went_to_nothing(phase, found.phases[i])) continue;
       const Section table = table_of_duration(scene, posed, i);
       if (has_unbounded_control(phase, posed.task.boundary))
         table.fail("free",
                    "a control without a bound or a cost makes the duration as short as one likes: give bounds, or "
                    "leave out free");
-      if (phase.system.groupoid.tau_inverse(posed.task.boundary).isZero(1e-12))
+      if (comes_back(posed))
         table.fail("free",
                    "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] "
                    "a range or a state on the way");
@@ -295,10 +312,13 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   static State end_of(const ControlScene& scene) { return Eigen::Map<const State>(scene.end.data()); }
   static ControlSearch<Sys> search(const Posed& posed, const std::function<bool(int)>& keep_going) {
     const ControlScene& scene = posed.scene;
-    if (scene.method == ControlMethod::interior_point)
-      return search_control(posed.task, scene.stages, scene.search, keep_going);
-    return search_control(posed.task, scene.stages, scene.search, keep_going,
-                          [](const auto&... with) { return solve_control_by_ipopt(with...); });
+    ControlSearch<Sys> found =
+        scene.method == ControlMethod::interior_point
+            ? search_control(posed.task, scene.stages, scene.search, keep_going)
+            : search_control(posed.task, scene.stages, scene.search, keep_going,
+                             [](const auto&... with) { return solve_control_by_ipopt(with...); });
+    leave_out_none(posed, found);
+    return found;
   }
   static const ControlSolution<Sys>& best_of(const ControlSearch<Sys>& found) {
     return found.minima.empty() ? found.best_failure : found.minima.front();

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -377,6 +378,15 @@ TEST_F(Control, ADurationThatCostsNothingIsRefused) {
       run(stop + " --json --set 'boundary.start=[0,1]' --set 'boundary.end=[3,1]' --set horizon.duration=2");
   EXPECT_EQ(drift.code, 0) << drift.err;
   EXPECT_NEAR(nlohmann::json::parse(drift.out).at("duration").get<double>(), 3, 1e-3);
+}
+
+// Back to where it stands, the shortest motion of a car is none; what is meant is the smallest circle.
+TEST_F(Control, AMotionThatComesBackIsOneThatMoves) {
+  const Outcome circle = run(scene("shortest_way") + " --json --set 'boundary.end=[0,0,0]'");
+  ASSERT_EQ(circle.code, 0) << circle.err;
+  const auto found = nlohmann::json::parse(circle.out);
+  EXPECT_NEAR(found.at("duration").get<double>(), 2 * std::numbers::pi, 1e-6);
+  EXPECT_EQ(found.at("costs").at(0), found.at("cost"));
 }
 
 TEST_F(Control, ATimeThatGoesToNothingIsRefused) {
