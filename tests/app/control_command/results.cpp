@@ -1,5 +1,5 @@
 // What `lagroid control` leaves: names and units of costates, constraints by their names, the page of `lagroid view`.
-#include "../command_line.hpp"
+#include "control_command.hpp"
 
 #include <reading/csv_table.hpp>
 #include <reading/data_set.hpp>
@@ -21,13 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-class ControlResults : public CommandLine {
+class ControlResults : public control_command_tests::ControlCommand {
  protected:
-  static std::string scene(const std::string& name) { return "control " + example("control/" + name); }
-  static std::string text_of(const std::string& name) {
-    std::ifstream file(fs::path(LAGROID_EXAMPLES) / "control" / (name + ".toml"));
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
   static std::string contents_of(const fs::path& file) {
     std::ifstream in(file);
     return {std::istreambuf_iterator<char>(in), {}};
