@@ -49,21 +49,22 @@ TYPED_TEST_SUITE(GroupMaps, Groups);
 
 // However small the displacement, where the arrow itself is linear in it to round-off.
 TYPED_TEST(GroupMaps, ExtendedArrowsHaveTheDerivativesOfTau) {
-  constexpr int n = TypeParam::dimension;
-  using S = SecondJet<double, n>;
+  constexpr int directions = TypeParam::dimension;
+  using S = SecondJet<double, directions>;
   const auto g = TypeParam::tau({}, this->random(1.0));
   for (const double size : {0.0, 1e-9, 1e-6, 0.1}) {
     const auto at = (size * this->random(1.0)).eval();
-    Vector<S, n> w;
-    for (int i = 0; i < n; ++i) w(i) = S::variable(at(i), i);
+    Vector<S, directions> w;
+    for (int i = 0; i < directions; ++i) w(i) = S::variable(at(i), i);
     const auto arrow = g.template cast<S>().eval();
     const auto extended = TypeParam::extend(arrow, w);
     const auto composed = (arrow * TypeParam::tau({}, w)).eval();
     for (int k = 0; k < extended.size(); ++k) {
       EXPECT_NEAR(extended(k).value, composed(k).value, 1e-15);
-      for (int i = 0; i < n; ++i) {
+      for (int i = 0; i < directions; ++i) {
         EXPECT_NEAR(extended(k).gradient(i), composed(k).gradient(i), 1e-14) << size;
-        for (int j = 0; j < n; ++j) EXPECT_NEAR(extended(k).hessian(i, j), composed(k).hessian(i, j), 1e-13) << size;
+        for (int j = 0; j < directions; ++j)
+          EXPECT_NEAR(extended(k).hessian(i, j), composed(k).hessian(i, j), 1e-13) << size;
       }
     }
   }
