@@ -325,11 +325,11 @@ class Parts(unittest.TestCase):
             ("--of", "energy"): "ask for final.NAME",
             ("--wrt", "parameters.quadrature"): "nothing of that name is differentiable",
             ("--wrt", "mass"): "initial.NAME or parameters.NAME",
-            ("--set", "time.mode=adaptive", "--set", "time.without_root=constant"): "gradient takes equal steps",
+            ("--set", "time.mode=adaptive", "--set", "time.without_root=controlled"): "gradient takes equal steps",
             ("--set", "time.mode=adaptive", "--set", "parameters.quadrature=midpoint", "--of", "integral.q"):
                 "integrals over steps whose sizes vary have no derivative here",
             ("--set", "solver.method=ceres"): "gradient takes equal steps",
-            ("--set", "time.method=runge-kutta", "--set", 'event=[{name = "x", when = "q"}]'): "by equal steps of order two",
+            ("--set", "time.method=extrapolation", "--set", "time.tolerance=1e-9", "--set", 'event=[{name = "x", when = "q"}]'): "by equal steps of order two",
             ("--set", "time.order=4", "--set", 'event=[{name = "x", when = "q"}]'): "by equal steps of order two",
             ("--set", 'event=[{name = "x", when = "q", at = "maximum"}]'): "not of minima and maxima",
             ("--set", 'event=[{name = "x", when = "q", set = ["gravity = energy"]}]'): "derivatives are of t, q, p",
