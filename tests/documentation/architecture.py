@@ -49,8 +49,35 @@ def unknown_paths(text):
             and not (root / "docs" / name).exists()]
 
 
+type_begun = re.compile(r"(?:template <.*> )?(?:struct|class|enum class) (\w+)(?: final)?(?: : .*)? \{")
+
+
+def types_of(text):
+    """Types that a file defines, with their namespaces, but for those of nameless ones and specialisations."""
+    spaces = []
+    for line in text.splitlines():
+        if begun := re.match(r"(?:inline )?namespace ?([\w:]*) ?\{$", line):
+            spaces.append(begun[1])
+        elif spaces and re.match(r"\}  // namespace", line):
+            spaces.pop()
+        elif "" not in spaces and (found := type_begun.match(line)):
+            yield "::".join([*spaces, found[1]])
+
+
+def types_of_one_name(top):
+    """Names of more than one type, which a program that links both would mix up, with the files that define them."""
+    files = {}
+    for path in sorted(path for layer in architecture.layers for path in (top / layer).rglob("*.[ch]pp")):
+        for name in types_of(path.read_text()):
+            files.setdefault(name, set()).add(str(path.relative_to(top)))
+    return {name: where for name, where in files.items() if len(where) > 1}
+
+
 class Architecture(unittest.TestCase):
     maxDiff = None
+
+    def test_a_name_is_of_one_type(self):
+        self.assertEqual(types_of_one_name(root), {})
 
     def test_layers_are_those_of_the_test_of_includes(self):
         tests = "".join(path.read_text() for path in sorted((root / "tests").glob("**/*.[ch]pp")))
@@ -122,6 +149,12 @@ class BrokenArchitecture(unittest.TestCase):
         self.assertEqual(edges, {("core", "run"), ("run", "core")})
         self.assertEqual(architecture.upward(edges), [("core", "run")])
         self.assertEqual(architecture.upward({("python", "app")}), [("python", "app")])
+
+    def test_two_types_of_one_name(self):
+        for file in ("core/a.hpp", "run/b.cpp"):
+            (self.top / file).write_text("namespace lagroid {\n\nstruct Number {\n};\n\n}  // namespace lagroid\n")
+        (self.top / "run/c.cpp").write_text("namespace lagroid {\nnamespace {\nstruct Number {\n};\n}  // namespace\n}\n")
+        self.assertEqual(types_of_one_name(self.top), {"lagroid::Number": {"core/a.hpp", "run/b.cpp"}})
 
     def test_an_edge_that_is_not_drawn(self):
         drawn = architecture.picture.read_text().replace("<title>run&#45;&gt;core</title>", "")

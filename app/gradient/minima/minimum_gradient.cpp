@@ -43,7 +43,7 @@ int serve(const Section& scene, const MinimumRequest& request) {
   if (objective == nullptr) scene.fail(keys::optimisation, "this problem does not say how it changes with its numbers");
   if (problem.penalty)
     scene.fail("method.constraint", "the minimum of a penalty is none of the problem; take another constraint");
-  const SceneNumbers numbers(name, *objective, *problem.instance.manifold);
+  const ObjectiveNumbers numbers(name, *objective, *problem.instance.manifold);
   MinimumTable table = minimum_table(problem, numbers, request);
   const optimisation::Result result = minimised(scene, problem);
   if (nothing_falls(result.outcome)) differentiate(problem, *objective, result.x, table);

@@ -53,7 +53,7 @@ GradientSubject subject_of_minimum(const OptimisationScene& scene, const Minimum
   out.observed.push_back({"minimum", "minimum"});
   for (int i = 1; i <= int(scene.instance.manifold->size()); ++i)
     out.observed.push_back({"minimiser", name_of_row(scene, i)});
-  for (const SceneNumber& number : table.numbers) {
+  for (const ObjectiveNumber& number : table.numbers) {
     out.parameters.push_back({"parameters", number.name});
     out.sizes.push_back(number.size);
   }
@@ -70,11 +70,11 @@ Eigen::VectorXd values_of_rows(const GradientTable& table, double value, const o
   return out;
 }
 
-/// As SceneNumbers has it. Throws NothingBeside.
-std::unique_ptr<ParametricObjective> objective_beside(const ParametricObjective& objective, const SceneNumber& number,
-                                                      double by) {
+/// As ObjectiveNumbers has it. Throws NothingBeside.
+std::unique_ptr<ParametricObjective> objective_beside(const ParametricObjective& objective,
+                                                      const ObjectiveNumber& number, double by) {
   try {
-    return SceneNumbers::changed(objective, number, by);
+    return ObjectiveNumbers::changed(objective, number, by);
   } catch (const std::invalid_argument& reason) {
     throw NothingBeside(fmt::format("cannot be made ({})", reason.what()));
   }
@@ -84,7 +84,7 @@ std::unique_ptr<ParametricObjective> objective_beside(const ParametricObjective&
 Eigen::VectorXd minimised_again(const OptimisationScene& scene, const ParametricObjective& objective,
                                 const MinimumTable& table, const Nudge& nudge) {
   const auto number = std::find_if(table.numbers.begin(), table.numbers.end(),
-                                   [&](const SceneNumber& each) { return each.name == nudge.parameter; });
+                                   [&](const ObjectiveNumber& each) { return each.name == nudge.parameter; });
   const auto changed = objective_beside(objective, *number, nudge.by);
   optimisation::TrustRegion method;
   const auto found = minimise(*scene.instance.manifold, *changed, table.found.x, method,
@@ -165,7 +165,8 @@ std::string failure_of(const MinimumTable& table) {
 
 }  // namespace
 
-MinimumTable minimum_table(const OptimisationScene& scene, const SceneNumbers& numbers, const MinimumRequest& request) {
+MinimumTable minimum_table(const OptimisationScene& scene, const ObjectiveNumbers& numbers,
+                           const MinimumRequest& request) {
   constexpr Eigen::Index few = 100;
   MinimumTable out;
   out.table.system = scene.problem;
@@ -179,8 +180,8 @@ MinimumTable minimum_table(const OptimisationScene& scene, const SceneNumbers& n
       observed.push_back(row);
       out.table.rows.push_back(name_of_row(scene, row));
     }
-  const auto add = [&](std::vector<SceneNumber> more) {
-    for (SceneNumber& each : more) {
+  const auto add = [&](std::vector<ObjectiveNumber> more) {
+    for (ObjectiveNumber& each : more) {
       auto& columns = out.table.columns;
       if (std::find(columns.begin(), columns.end(), each.name) != columns.end()) continue;
       columns.push_back(each.name);
@@ -189,7 +190,7 @@ MinimumTable minimum_table(const OptimisationScene& scene, const SceneNumbers& n
   };
   if (request.by.empty()) add(numbers.few(few, out.table.notes));
   for (const std::string& word : request.by) add(numbers.named(word));
-  for (const SceneNumber& each : out.numbers)
+  for (const ObjectiveNumber& each : out.numbers)
     out.found.parameters.insert(out.found.parameters.end(), each.entries.begin(), each.entries.end());
   return out;
 }

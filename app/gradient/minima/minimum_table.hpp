@@ -11,7 +11,7 @@
 #include "../../optimise/optimisation_scene.hpp"
 #include "../gradient_table.hpp"
 #include "minimum_gradient.hpp"
-#include "scene_numbers.hpp"
+#include "objective_numbers.hpp"
 
 #include <lagroid/solvers/optimisation/sensitivity/minimum_derivatives.hpp>
 
@@ -25,12 +25,13 @@ struct MinimumTable {
   std::string manifold;
   std::string method;
   std::string status;  ///< of the minimisation, or of the minimum
-  std::vector<SceneNumber> numbers;
+  std::vector<ObjectiveNumber> numbers;
   optimisation::MinimumDerivatives found;
 };
 
 /// With its rows and columns, and without numbers. Throws GradientRefused.
-MinimumTable minimum_table(const OptimisationScene& scene, const SceneNumbers& numbers, const MinimumRequest& request);
+MinimumTable minimum_table(const OptimisationScene& scene, const ObjectiveNumbers& numbers,
+                           const MinimumRequest& request);
 /// At the minimum near x.
 void differentiate(const OptimisationScene& scene, const optimisation::ParametricObjective& objective,
                    const optimisation::Point& x, MinimumTable& table);

@@ -56,7 +56,7 @@ MinimumTable checked(double gap, double factor, const std::vector<std::string>& 
   scene.instance.manifold = std::make_unique<optimisation::Sphere>(n);
   scene.instance.rows = n;
   scene.method = std::make_unique<optimisation::TrustRegion>();
-  const SceneNumbers numbers("rayleigh", f, *scene.instance.manifold);
+  const ObjectiveNumbers numbers("rayleigh", f, *scene.instance.manifold);
   MinimumRequest request;
   request.of = rows;
   request.check = true;

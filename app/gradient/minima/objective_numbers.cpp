@@ -1,4 +1,4 @@
-#include "scene_numbers.hpp"
+#include "objective_numbers.hpp"
 
 #include "../gradient_table.hpp"
 
@@ -19,7 +19,8 @@ using optimisation::Manifold, optimisation::ParameterEntry, optimisation::Parame
 
 }  // namespace
 
-SceneNumbers::SceneNumbers(const std::string& problem, const ParametricObjective& objective, const Manifold& manifold)
+ObjectiveNumbers::ObjectiveNumbers(const std::string& problem, const ParametricObjective& objective,
+                                   const Manifold& manifold)
     : objective_(objective) {
   const std::vector<ParameterTable> tables = objective.parameters();
   const auto add = [&](ParameterTable table, const auto& entries) { tables_.push_back({std::move(table), entries}); };
@@ -49,8 +50,8 @@ SceneNumbers::SceneNumbers(const std::string& problem, const ParametricObjective
   }
 }
 
-SceneNumber SceneNumbers::number(const Table& table, Eigen::Index row, Eigen::Index column) const {
-  SceneNumber out;
+ObjectiveNumber ObjectiveNumbers::number(const Table& table, Eigen::Index row, Eigen::Index column) const {
+  ObjectiveNumber out;
   auto entries = table.entries(row, column);
   if (entries.empty()) {
     // The one across the diagonal of its matrix.
@@ -67,7 +68,7 @@ SceneNumber SceneNumbers::number(const Table& table, Eigen::Index row, Eigen::In
   return out;
 }
 
-double SceneNumbers::largest_in_row(const Table& table, Eigen::Index row) const {
+double ObjectiveNumbers::largest_in_row(const Table& table, Eigen::Index row) const {
   double out = 0;
   for (Eigen::Index column = 0; column < table.of_scene.columns; ++column)
     if (const auto entries = table.entries(row, column); !entries.empty())
@@ -75,15 +76,15 @@ double SceneNumbers::largest_in_row(const Table& table, Eigen::Index row) const 
   return out;
 }
 
-std::vector<SceneNumber> SceneNumbers::of_table(const Table& table) const {
-  std::vector<SceneNumber> out;
+std::vector<ObjectiveNumber> ObjectiveNumbers::of_table(const Table& table) const {
+  std::vector<ObjectiveNumber> out;
   for (const ParameterEntry& each : entries_named({table.of_scene}, table.of_scene.name))
     if (!table.entries(each.row, each.column).empty()) out.push_back(number(table, each.row, each.column));
   return out;
 }
 
-std::vector<SceneNumber> SceneNumbers::named(const std::string& word) const {
-  std::vector<SceneNumber> out;
+std::vector<ObjectiveNumber> ObjectiveNumbers::named(const std::string& word) const {
+  std::vector<ObjectiveNumber> out;
   std::vector<ParameterTable> of_scene;
   for (const Table& table : tables_) {
     of_scene.push_back(table.of_scene);
@@ -95,8 +96,8 @@ std::vector<SceneNumber> SceneNumbers::named(const std::string& word) const {
   try {
     for (const ParameterEntry& each : entries_named(of_scene, word)) {
       const Table& table = tables_[each.table];
-      SceneNumber found = number(table, each.row, each.column);
-      const auto is_same = [&](const SceneNumber& other) { return other.name == found.name; };
+      ObjectiveNumber found = number(table, each.row, each.column);
+      const auto is_same = [&](const ObjectiveNumber& other) { return other.name == found.name; };
       if (std::none_of(out.begin(), out.end(), is_same)) out.push_back(std::move(found));
     }
   } catch (const std::invalid_argument& error) {
@@ -105,8 +106,8 @@ std::vector<SceneNumber> SceneNumbers::named(const std::string& word) const {
   return out;
 }
 
-std::vector<SceneNumber> SceneNumbers::few(Eigen::Index most, std::vector<std::string>& notes) const {
-  std::vector<SceneNumber> out;
+std::vector<ObjectiveNumber> ObjectiveNumbers::few(Eigen::Index most, std::vector<std::string>& notes) const {
+  std::vector<ObjectiveNumber> out;
   for (const Table& table : tables_) {
     const ParameterTable& of_scene = table.of_scene;
     if (of_scene.count() > most && of_scene.name.starts_with("data.")) {
@@ -123,8 +124,8 @@ std::vector<SceneNumber> SceneNumbers::few(Eigen::Index most, std::vector<std::s
   return out;
 }
 
-std::unique_ptr<ParametricObjective> SceneNumbers::changed(const ParametricObjective& objective,
-                                                           const SceneNumber& number, double by) {
+std::unique_ptr<ParametricObjective> ObjectiveNumbers::changed(const ParametricObjective& objective,
+                                                               const ObjectiveNumber& number, double by) {
   std::unique_ptr<ParametricObjective> out;
   for (const ParameterEntry& each : number.entries) out = (out ? *out : objective).changed(each, by);
   return out;
