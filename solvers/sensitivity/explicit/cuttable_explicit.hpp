@@ -8,7 +8,9 @@
 /// LinearisedRungeKutta are such motions.
 ///
 ///     LinearisedSplitting<Kepler> motion(kepler, start, unit, splittings::srkn6, {"strength"}, end_state);
-///     MotionThroughEvents through(std::make_unique<LinearisedSplitting<Kepler>>(...), events);
+///     motion.keep();
+///     if (motion.go(0.3 * kepler.h).converged())  // three tenths of a step
+///       for (const auto& each : motion.part()) derivatives.push_back(each);
 ///
 /// Requires steps that do not depend on the time. Errors: those of LinearisedExplicit; WithoutDerivative for a part of
 /// a step whose system takes times as plain numbers alone (`has_rate`).
