@@ -146,9 +146,26 @@ template <class Step> class ProjectedStep {
   static constexpr bool explicit_step = false;
 
   StepReport take(const X& x, double h, X& end) const {
+    StepReport report = step.take(x, h, end);
+    lead_back(x, end, report);
+    return report;
+  }
+  StepSlope<size> slope(const X& x, double h, std::span<const double* const> members = {}) const {
+    using OnLevels = Levels<std::remove_cvref_t<decltype(system())>, false>;
+    X y;
+    StepReport report = step.take(x, h, y);
+    X z = y;
+    lead_back(x, z, report);
+    if (!report.converged()) return unknown_slope<size>(size + int(members.size()));
+    return OnLevels::slope_of_way(system(), y, z, step.slope(x, h, members),
+                                  OnLevels::slope_of_values(system(), x, members), members, 0);
+  }
+
+ private:
+  /// y, where a step that converged ends, becomes z.
+  void lead_back(const X& x, X& end, StepReport& report) const {
     const auto& system = this->system();
     using Sys = std::remove_cvref_t<decltype(system)>;
-    StepReport report = step.take(x, h, end);
     if constexpr (casimir_count<Sys>() > 0) {
       constexpr int count = casimir_count<Sys>();
       using J = Jet<double, size>;
@@ -171,16 +188,6 @@ template <class Step> class ProjectedStep {
         end += along.transpose() * gap;
       }
     }
-    return report;
-  }
-  StepSlope<size> slope(const X& x, double h, std::span<const double* const> members = {}) const {
-    using OnLevels = Levels<std::remove_cvref_t<decltype(system())>, false>;
-    X y;
-    X z;
-    if (!step.take(x, h, y).converged() || !take(x, h, z).converged())
-      return unknown_slope<size>(size + int(members.size()));
-    return OnLevels::slope_of_way(system(), y, z, step.slope(x, h, members),
-                                  OnLevels::slope_of_values(system(), x, members), members, 0);
   }
 };
 
