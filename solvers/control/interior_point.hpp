@@ -136,7 +136,7 @@ class InteriorPoint {
   Merit merit(const StageValues& values, const StageRows& slacks) const;
   double scaled_error(double barrier);
   double smoothed_violation(const StageValues& at, double nu) const;
-  bool factor();
+  bool factor(const KktVector& right);
   bool direction();
   void newton_side(const StageRows& equality, const StageRows& inequality_gap);
   double change_of_inequality(long stage, int i) const;

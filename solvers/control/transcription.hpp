@@ -35,13 +35,13 @@ struct StageValues {
 };
 
 /// Their derivatives: of the cost, of each constraint row by row, and the Hessian of the stage's Lagrangian
-/// l + <lambda, phi> + <z, gamma>.
+/// l + <lambda, phi> + <z, gamma>. Bounds of controls have none here: theirs are their signs.
 struct StageDerivatives {
   StageDerivatives() = default;
   explicit StageDerivatives(const TranscriptionSizes& sizes)
       : gradient(sizes.stages, sizes.variables()),
         equality(sizes.stages, sizes.equality * sizes.variables()),
-        inequality(sizes.stages, sizes.inequality * sizes.variables()),
+        inequality(sizes.stages, sizes.general_inequality() * sizes.variables()),
         hessian(sizes.stages, sizes.variables() * sizes.variables()) {}
   StageRows gradient;
   StageRows equality;

@@ -150,13 +150,10 @@ template <class Sys> class TranscriptionOf final : public Transcription {
         }
         double* rows = out.inequality[k];
         if (!inequalities_hold) std::fill(rows, rows + Sys::inequalities * d, 0.0);
-        std::fill(rows + Sys::inequalities * d, rows + sizes_.inequality * d, 0.0);
+        std::fill(rows + Sys::inequalities * d, rows + before_bounds() * d, 0.0);
         for (std::size_t i = 0; i < duration_bounds_.size(); ++i)
           if (duration_bounds_[i].holds(phase) && begins(k, p))
             rows[(Sys::inequalities + int(i) + 1) * d - 1] = duration_bounds_[i].sign;
-        double* bounds = rows + before_bounds() * d;
-        for (std::size_t i = 0; i < bounds_.size(); ++i)
-          if (bounds_[i].holds(phase)) bounds[int(i) * d + 2 * n + bounds_[i].control] = bounds_[i].sign;
       }
     for (std::size_t i = 0; i < conditions_.size(); ++i) add_condition(i, lambda, out);
   }

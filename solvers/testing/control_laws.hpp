@@ -172,9 +172,14 @@ inline LawReport transcription_laws(Transcription& subject, int samples = 5, std
         equality = std::max(equality,
                             defect(slope(derivatives.equality[k] + i * d),
                                    along.differences([&](const StageValues& at) { return at.equality[k][i]; }).first));
+      const auto slope_of_bound = [&](int i) {
+        const ControlBound& at = sizes.phases[std::size_t(sizes.phase_of(k))].bounds[std::size_t(i)];
+        return at.sign * x[std::size_t(sizes.at_control() + at.control)];
+      };
+      const int general = sizes.general_inequality();
       for (int i = 0; i < sizes.inequality; ++i)
         inequality = std::max(
-            inequality, defect(slope(derivatives.inequality[k] + i * d),
+            inequality, defect(i < general ? slope(derivatives.inequality[k] + i * d) : slope_of_bound(i - general),
                                along.differences([&](const StageValues& at) { return at.inequality[k][i]; }).first));
       double curvature = 0;
       for (int q = 0; q < d; ++q) {

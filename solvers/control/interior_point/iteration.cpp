@@ -88,8 +88,7 @@ double InteriorPoint::scaled_error(double barrier) {
 
 void InteriorPoint::evaluate() {
   transcription_.derivatives(costates_, multipliers_, derivatives_);
-  lagrangian_gradient(transcription_, derivatives_, costates_, multipliers_, gradient_);
-  kkt_rounding(transcription_, derivatives_, costates_, multipliers_, rounding_);
+  lagrangian_gradient(transcription_, derivatives_, costates_, multipliers_, gradient_, rounding_);
 }
 
 // ---- the start
@@ -148,12 +147,12 @@ void InteriorPoint::least_squares_costates() {
   set_all(sigma_, 0);
   kkt_.assemble(derivatives_, sigma_, StageKkt::HessianPart::none);
   set_all(dual_, 0);
-  kkt_.factor(1, dual_);
-  ++report_.factorisations;
   right_.primal = gradient_;
   negate(right_.primal);
   set_all(right_.multipliers, 0);
-  kkt_.solve(right_, step_);
+  kkt_.factor(1, dual_, &right_);
+  ++report_.factorisations;
+  kkt_.solve_eliminated(right_, step_);
   if (largest_entry(step_.multipliers) <= 1e3) costates_ = step_.multipliers;
 }
 
@@ -194,12 +193,13 @@ void InteriorPoint::slack_directions(const StageRows& gap) {
     }
 }
 
-/// Factors the assembled matrix, shifted until it has the inertia of a minimum. False where no shift helps.
-bool InteriorPoint::factor() {
+/// Factors the assembled matrix, shifted until it has the inertia of a minimum, and eliminates right-hand sides. False
+/// where no shift helps.
+bool InteriorPoint::factor(const KktVector& right) {
   shift_ = 0;
   bool relaxed = false;
   for (;;) {
-    const StageKkt::Inertia inertia = kkt_.factor(shift_, dual_);
+    const StageKkt::Inertia inertia = kkt_.factor(shift_, dual_, &right);
     ++report_.factorisations;
     const bool singular = !(inertia.smallest > 1e-18);
     if (!singular && inertia.negative == kkt_.equalities()) break;
@@ -226,9 +226,9 @@ bool InteriorPoint::direction() {
   equality_ = values_.equality;
   kkt_.assemble(derivatives_, sigma_);
   set_all(dual_, 0);
-  if (!factor()) return false;
   newton_side(equality_, gap_);
-  kkt_.solve(right_, step_);
+  if (!factor(right_)) return false;
+  kkt_.solve_eliminated(right_, step_);
   slack_directions(gap_);
   return true;
 }

@@ -113,10 +113,10 @@ bool InteriorPoint::restore() {
       continue;
     }
     if (age++ % patience == 0) before = now;
-    if (!factor()) break;
     lagrangian_gradient(transcription_, derivatives_, costates_, weights_, right_.primal);
     negate(right_.primal);
-    kkt_.solve(right_, step_);
+    if (!factor(right_)) break;
+    kkt_.solve_eliminated(right_, step_);
 
     const double slope = dot(gradient_, step_.primal);
     double fraction = 1;

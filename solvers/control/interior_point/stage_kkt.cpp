@@ -1,4 +1,5 @@
 #include <lagroid/solvers/control/stage_kkt.hpp>
+#include <lagroid/solvers/linear_algebra/row_sums.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,16 +14,14 @@ namespace {
 constexpr double round_off_left = 1e-12;
 constexpr int most_corrections = 4;
 
-/// A loop, where a call of memmove would take longer.
-void copy(const double* from, int count, double* to) {
-  for (int i = 0; i < count; ++i) to[i] = from[i];
-}
-
 /// out = A x, A symmetric of so many rows, each as long as out.
 void multiply(const double* a, const double* x, int rows, int row, double* out) {
   std::fill(out, out + row, 0.0);
   add_combination(out, x, 1, a, rows, row);
 }
+
+/// The larger magnitude; infinite where x is no number.
+double larger(double most, double x) { return std::isnan(x) ? HUGE_VAL : std::max(most, std::abs(x)); }
 
 }  // namespace
 
@@ -53,32 +52,31 @@ StageKkt::StageKkt(const Transcription& ends, const TranscriptionSizes& sizes)
     }
   }
   border_ = int(beside_.size());
-  block_ = sizes_.control + sizes_.equality + sizes_.node;
-  row_ = padded(block_);
-  diagonal_ = StageRows(stages, block_ * row_);
+  displaced_ = sizes_.node + sizes_.control;
+  const int block = displaced_ + sizes_.equality;
+  row_ = padded(block);
   coupling_ = StageRows(stages, sizes_.node * row_);
-  bordered_ = StageRows(stages, border_ * row_);
   corner_.resize(std::size_t(border_ * border_));
-  for (int m = 0; m <= sizes_.equality; ++m) factors_.emplace_back(sizes_.control + m + sizes_.node, row_);
-  inverse_ = StageRows(stages, block_ * row_);
+  for (int m = 0; m <= sizes_.equality; ++m) factors_.emplace_back(displaced_ + m, row_);
+  inverse_ = StageRows(stages, block * row_);
   border_solved_ = StageRows(stages, border_ * row_);
   corner_factor_ = SymmetricFactorSized(border_);
-  corner_work_.resize(corner_.size());
   corner_inverse_.resize(std::size_t(border_ * padded(border_)));
-  right_ = StageRows(stages, row_);
   eliminated_ = StageRows(stages, row_);
-  solution_ = StageRows(stages, row_);
   border_right_.resize(std::size_t(border_));
   border_eliminated_.resize(std::size_t(border_));
   border_step_.resize(std::size_t(border_));
-  border_solution_.resize(std::size_t(border_));
-  hessian_.resize(std::size_t(sizes_.variables() * sizes_.variables()));
-  no_hessian_.resize(hessian_.size());
-  block_work_.resize(std::size_t(block_ * row_));
+  for (Product& each : products_) {
+    each.primal.resize(std::size_t(sizes_.variables()));
+    each.equality.resize(std::size_t(sizes_.equality));
+  }
+  for (std::vector<double>& each : hessians_) each.resize(std::size_t(sizes_.variables() * sizes_.variables()));
+  no_hessian_.resize(hessians_[0].size());
+  block_work_.resize(std::size_t(block * row_));
   passed_rows_.resize(std::size_t(sizes_.node * row_));
   row_work_.resize(std::size_t(row_));
   weights_.resize(std::size_t(sizes_.node));
-  dual_ = StageRows(stages, sizes_.equality);
+  along_.resize(std::size_t(sizes_.variables()));
 }
 
 long StageKkt::equalities() const {
@@ -87,113 +85,118 @@ long StageKkt::equalities() const {
   return sum;
 }
 
-/// Of what is fixed: an unknown that stays zero.
-void StageKkt::keep_zero(long stage, int at) {
-  double* here = diagonal_[stage];
-  for (int q = 0; q < block_of(stage); ++q) here[at * row_ + q] = here[q * row_ + at] = 0;
-  for (int q = 0; q < sizes_.node; ++q) coupling_[stage][q * row_ + at] = 0;
-  for (int q = 0; q < columns_[std::size_t(stage)]; ++q) bordered_[stage][q * row_ + at] = 0;
-  here[at * row_ + at] = 1;
-}
-
 void StageKkt::assemble(const StageDerivatives& derivatives, const StageRows& sigma, HessianPart hessian_part) {
   derivatives_ = &derivatives;
   sigma_ = &sigma;
   hessian_part_ = hessian_part;
 }
 
+/// Calls what(i) for the unknowns of y_k that are fixed and stay zero.
+template <class What> void StageKkt::for_fixed(long stage, std::size_t phase, const What& what) const {
+  const std::vector<bool>& is_fixed = sizes_.phases[phase].control_is_fixed;
+  for (std::size_t i = 0; i < is_fixed.size(); ++i)
+    if (is_fixed[i]) what(sizes_.node + int(i));
+  if (stage + 1 == sizes_.stages)
+    for (int i = 0; i < sizes_.node; ++i)
+      if (!free_end_[std::size_t(i)]) what(i);
+}
+
 /// Of the stage's Lagrangian + sum_i sigma_i dgamma_i^T dgamma_i, but for bounds of controls: as it stands where no
-/// inequality adds to it.
+/// inequality adds to it, else in a place that the next but one takes.
 const double* StageKkt::stage_hessian(long stage) {
   const int d = sizes_.variables();
+  std::vector<double>& changed = hessians_[std::size_t(stage % 2)];
   const double* out = hessian_part_ == HessianPart::exact ? derivatives_->hessian[stage] : no_hessian_.data();
   for (int i = 0; i < sizes_.general_inequality(); ++i) {
     const double* row = derivatives_->inequality[stage] + i * d;
     for (int r = 0; r < d; ++r) {
       const double x = (*sigma_)[stage][i] * row[r];
       if (x == 0) continue;
-      if (out != hessian_.data()) copy(out, d * d, hessian_.data());
-      out = hessian_.data();
-      for (int q = 0; q < d; ++q) hessian_[std::size_t(r * d + q)] += x * row[q];
+      if (out != changed.data()) copy_row(out, d * d, changed.data());
+      out = changed.data();
+      add_rows(changed.data() + r * d, &x, row, 1, d);
     }
   }
   return out;
 }
 
-void StageKkt::assemble_stage(long k) {
+/// The block of stage k, its coupling to v_k and its border, before anything is eliminated, of the Hessian `h` of the
+/// stage and that of the next one, if there is one: both know v_{k+1}.
+void StageKkt::assemble_stage(long k, std::size_t phase, const double* h, const double* next) {
   const int n = sizes_.node;
-  const int c = sizes_.control;
   const int d = sizes_.variables();
-  const double* h = stage_hessian(k);
+  const int m = sizes_.equalities_of(k);
   const double* equality = derivatives_->equality[k];
-  const int v = target_of(k);
-  const int m = v - c;
-  // Controls and the node that the stage leads to, from a row over the stage's variables.
-  const auto place = [&](const double* from, double* row) {
-    copy(from + 2 * n, c, row);
-    copy(from + n, n, row + v);
-  };
-  // The same and multipliers: what a variable of elsewhere couples to.
+  // What a variable of elsewhere couples to: v_{k+1} and controls, which stand side by side, and multipliers.
   const auto column = [&](int variable, double* row) {
-    place(h + variable * d, row);
-    for (int i = 0; i < m; ++i) row[c + i] = equality[i * d + variable];
+    copy_row(h + variable * d + n, displaced_, row);
+    for (int i = 0; i < m; ++i) row[displaced_ + i] = equality[i * d + variable];
   };
-  double* here = diagonal_[k];
-  for (int r = 0; r < c; ++r) column(2 * n + r, here + r * row_);
-  for (int r = 0; r < n; ++r) column(n + r, here + (v + r) * row_);
+  double* here = block_work_.data();
+  for (int r = 0; r < displaced_; ++r) {
+    column(n + r, here + r * row_);
+    here[r * (row_ + 1)] += primal_;
+  }
   for (int i = 0; i < m; ++i) {
-    double* row = here + (c + i) * row_;
-    for (int q = c; q < v; ++q) row[q] = 0;
-    place(equality + i * d, row);
+    double* row = here + (displaced_ + i) * row_;
+    copy_row(equality + i * d + n, displaced_, row);
+    std::fill(row + displaced_, row + displaced_ + m, 0.0);
+    row[displaced_ + i] = -(*dual_)[k][i];
   }
-  std::fill(bordered_[k], bordered_[k] + border_ * row_, 0.0);
-  if (k > 0) {
-    double* before = diagonal_[k - 1] + target_of(k - 1) * (row_ + 1);
-    for (int r = 0; r < n; ++r)
-      for (int q = 0; q < n; ++q) before[r * row_ + q] += h[r * d + q];
-    for (int q = 0; q < n; ++q) column(q, coupling_[k] + q * row_);
-  } else {
-    for (int q = 0; q < n; ++q) {
-      const int border = border_of_start(q);
-      if (border < 0) continue;
-      column(q, bordered_[k] + border * row_);
-      for (int r = 0; r < n; ++r)
-        if (border_of_start(r) >= 0) corner_[std::size_t(border * border_ + border_of_start(r))] += h[q * d + r];
-    }
-  }
-  const auto phase = std::size_t(sizes_.phase_of(k));
-  const std::vector<ControlBound>& bounds = sizes_.phases[phase].bounds;
+  const TranscriptionPhase& of = sizes_.phases[phase];
   const double* sigma = (*sigma_)[k] + sizes_.general_inequality();
-  for (std::size_t i = 0; i < bounds.size(); ++i)
-    here[bounds[i].control * (row_ + 1)] += sigma[i] * bounds[i].sign * bounds[i].sign;
-  if (const int last = duration_border_[phase]; last >= 0) {
-    const double* along = h + sizes_.at_duration() * d;
-    column(sizes_.at_duration(), bordered_[k] + last * row_);
-    corner_[std::size_t(last * border_ + last)] += along[sizes_.at_duration()];
-    for (int q = 0; q < n; ++q) {
-      if (k > 0) {
-        bordered_[k - 1][last * row_ + target_of(k - 1) + q] += along[q];
-      } else if (border_of_start(q) >= 0) {
-        const int border = border_of_start(q);
-        corner_[std::size_t(border * border_ + last)] += along[q];
-        corner_[std::size_t(last * border_ + border)] += along[q];
-      }
-    }
-  }
-  const std::vector<bool>& is_fixed = sizes_.phases[phase].control_is_fixed;
-  for (std::size_t i = 0; i < is_fixed.size(); ++i)
-    if (is_fixed[i]) keep_zero(k, int(i));
-  if (k + 1 == sizes_.stages)
-    for (int i = 0; i < n; ++i)
-      if (!free_end_[std::size_t(i)]) keep_zero(k, v + i);
+  for (std::size_t i = 0; i < of.bounds.size(); ++i)
+    here[(n + of.bounds[i].control) * (row_ + 1)] += sigma[i] * of.bounds[i].sign * of.bounds[i].sign;
+  if (next)
+    for (int r = 0; r < n; ++r)
+      for (int q = 0; q < n; ++q) here[r * row_ + q] += next[r * d + q];
+  if (k > 0)
+    for (int q = 0; q < n; ++q) column(q, coupling_[k] + q * row_);
+  if (border_ > 0) assemble_border(k, phase, h, next, column);
+  for_fixed(k, phase, [&](int at) {
+    for (int q = 0; q < block_of(k); ++q) here[at * row_ + q] = here[q * row_ + at] = 0;
+    for (int q = 0; q < n; ++q) coupling_[k][q * row_ + at] = 0;
+    for (int q = 0; q < columns_[std::size_t(k)]; ++q) border_solved_[k][q * row_ + at] = 0;
+    here[at * (row_ + 1)] = 1;
+  });
 }
 
-/// What the stages before leave of a stage's block, in `work`, and of its border.
-void StageKkt::pass_on(long k, double* work) {
+template <class Column>
+void StageKkt::assemble_border(long k, std::size_t phase, const double* h, const double* next, const Column& column) {
   const int n = sizes_.node;
-  const int v_before = target_of(k - 1);
+  const int t = sizes_.at_duration();
+  const int d = sizes_.variables();
+  double* border = border_solved_[k];
+  const auto corner = [&](int i, int j) -> double& { return corner_[std::size_t(i * border_ + j)]; };
+  std::fill(border, border + columns_[std::size_t(k)] * row_, 0.0);
+  const int last = duration_border_[phase];
+  if (last >= 0) {
+    column(t, border + last * row_);
+    corner(last, last) += h[t * d + t];
+  }
+  if (k == 0)
+    for (int q = 0; q < n; ++q) {
+      const int at = border_of_start(q);
+      if (at < 0) continue;
+      column(q, border + at * row_);
+      for (int r = 0; r < n; ++r)
+        if (border_of_start(r) >= 0) corner(at, border_of_start(r)) += h[q * d + r];
+      if (last >= 0) {
+        corner(at, last) += h[t * d + q];
+        corner(last, at) += h[t * d + q];
+      }
+    }
+  if (!next) return;
+  if (const int of_next = duration_border_[k + 1 == sizes_.phases[phase].end ? phase + 1 : phase]; of_next >= 0)
+    for (int q = 0; q < n; ++q) border[of_next * row_ + q] += next[t * d + q];
+}
+
+/// Takes from a stage's block and border what the stages before leave of it.
+void StageKkt::pass_on(long k) {
+  const int n = sizes_.node;
+  double* work = block_work_.data();
   const double* coupling = coupling_[k];
-  const double* passed = inverse_[k - 1] + v_before * (row_ + 1);
+  const double* passed = inverse_[k - 1];
   std::fill(passed_rows_.begin(), passed_rows_.end(), 0.0);
   for (int q = 0; q < n; ++q) {
     for (int r = 0; r < n; ++r) weights_[std::size_t(r)] = 0.5 * (passed[q * row_ + r] + passed[r * row_ + q]);
@@ -202,187 +205,202 @@ void StageKkt::pass_on(long k, double* work) {
   for (int i = 0; i < block_of(k); ++i)
     subtract_combination(work + i * row_, passed_rows_.data() + i, row_, coupling, n, row_);
   for (int border = 0; border < columns_[std::size_t(k - 1)]; ++border)
-    subtract_combination(border_solved_[k] + border * row_, border_solved_[k - 1] + border * row_ + v_before, 1,
-                         coupling, n, row_);
+    subtract_combination(border_solved_[k] + border * row_, border_solved_[k - 1] + border * row_, 1, coupling, n,
+                         row_);
 }
 
-/// The border of a stage, in `border_solved_`, through the inverse of its block, and what that takes from the corner.
+/// The border of a stage, in `border_solved_`, through the inverse of its block, and what that takes from the corner,
+/// below its diagonal.
 void StageKkt::eliminate_border(long k) {
   for (int i = 0; i < columns_[std::size_t(k)]; ++i) {
     double* border = border_solved_[k] + i * row_;
     multiply(inverse_[k], border, block_of(k), row_, row_work_.data());
     for (int j = i; j < columns_[std::size_t(k)]; ++j)
-      corner_work_[std::size_t(j * border_ + i)] -=
-          sum_of_products(border_solved_[k] + j * row_, row_work_.data(), row_);
-    copy(row_work_.data(), row_, border);
+      corner_[std::size_t(j * border_ + i)] -= sum_of_products(border_solved_[k] + j * row_, row_work_.data(), row_);
+    std::copy(row_work_.begin(), row_work_.end(), border);
   }
 }
 
-StageKkt::Inertia StageKkt::factor(double primal, const StageRows& dual) {
+StageKkt::Inertia StageKkt::factor(double primal, const StageRows& dual, const KktVector* right) {
   primal_ = primal;
-  dual_ = dual;
-  const int c = sizes_.control;
+  dual_ = &dual;
   Inertia inertia{0, std::numeric_limits<double>::infinity()};
   const auto note = [&](const SymmetricFactorSized& factor) {
     inertia.negative += factor.negative();
     inertia.smallest = std::min(inertia.smallest, factor.smallest());
   };
-  double* work = block_work_.data();
   std::fill(corner_.begin(), corner_.end(), 0.0);
-  std::fill(corner_work_.begin(), corner_work_.end(), 0.0);
-  assemble_stage(0);
-  for (long k = 0; k < sizes_.stages; ++k) {
-    if (k + 1 < sizes_.stages) assemble_stage(k + 1);  // which adds to this one
-    const int v = target_of(k);
-    const int block = block_of(k);
-    copy(diagonal_[k], block * row_, work);
-    for (int i = 0; i < block; ++i) work[i * row_ + i] += i >= c && i < v ? -dual[k][i - c] : primal;
-    copy(bordered_[k], columns_[std::size_t(k)] * row_, border_solved_[k]);
-    if (k > 0) pass_on(k, work);
-    SymmetricFactorSized& factor = factors_[std::size_t(v - c)];
-    factor.compute(work, row_);
-    note(factor);
-    factor.invert(inverse_[k]);
-    eliminate_border(k);
-  }
+  if (right) begin_elimination(*right, nullptr);
+  const double* next = stage_hessian(0);
+  long k = 0;
+  for (std::size_t phase = 0; phase < sizes_.phases.size(); ++phase)
+    for (; k < sizes_.phases[phase].end; ++k) {
+      const double* here = std::exchange(next, k + 1 < sizes_.stages ? stage_hessian(k + 1) : nullptr);
+      assemble_stage(k, phase, here, next);
+      if (k > 0) pass_on(k);
+      SymmetricFactorSized& factor = factors_[std::size_t(sizes_.equalities_of(k))];
+      factor.compute(block_work_.data(), row_);
+      note(factor);
+      factor.invert(inverse_[k]);
+      eliminate_border(k);
+      if (right) eliminate(k, phase, *right, nullptr);
+    }
+  if (right) end_elimination();
   if (border_ > 0) {
-    double* corner = corner_work_.data();
-    for (int i = 0; i < border_; ++i)
-      for (int j = 0; j <= i; ++j)
-        corner[j * border_ + i] = corner[i * border_ + j] += corner_[std::size_t(i * border_ + j)];
-    for (int i = 0; i < border_; ++i) corner[i * (border_ + 1)] += primal;
-    corner_factor_.compute(corner, border_);
+    for (int i = 0; i < border_; ++i) {
+      for (int j = 0; j < i; ++j) corner_[std::size_t(j * border_ + i)] = corner_[std::size_t(i * border_ + j)];
+      corner_[std::size_t(i * (border_ + 1))] += primal;
+    }
+    corner_factor_.compute(corner_.data(), border_);
     note(corner_factor_);
     corner_factor_.invert(corner_inverse_.data());
   }
   return inertia;
 }
 
-/// Right-hand sides in the stages' rows; zero for what is fixed.
-void StageKkt::take(const KktVector& right) {
+/// What the stage's part of the matrix makes of x: along the stage's variables, and of its equalities.
+const StageKkt::Product& StageKkt::product(long k, std::size_t phase, const KktVector& x) {
   const int n = sizes_.node;
-  const int c = sizes_.control;
-  for (int q = 0; q < border_; ++q) border_right_[std::size_t(q)] = entry(right.primal, beside_[std::size_t(q)]);
-  std::size_t phase = 0;
-  for (long k = 0; k < sizes_.stages; ++k) {
-    if (k == sizes_.phases[phase].end) ++phase;
-    const int v = target_of(k);
-    double* here = right_[k];
-    copy(right.primal.controls[k], c, here);
-    copy(right.multipliers[k], v - c, here + c);
-    copy(right.primal.nodes[k + 1], n, here + v);
-    const std::vector<bool>& is_fixed = sizes_.phases[phase].control_is_fixed;
-    for (std::size_t i = 0; i < is_fixed.size(); ++i)
-      if (is_fixed[i]) here[i] = 0;
-    if (k + 1 == sizes_.stages)
-      for (int i = 0; i < n; ++i)
-        if (!free_end_[std::size_t(i)]) here[v + i] = 0;
+  const int d = sizes_.variables();
+  Product& out = products_[std::size_t(k % 2)];
+  double* along = along_.data();
+  copy_row(x.primal.nodes[k], 2 * n, along);  // both ends of the stage
+  copy_row(x.primal.controls[k], sizes_.control, along + sizes_.at_control());
+  along[sizes_.at_duration()] = x.primal.durations[phase];
+  double* primal = out.primal.data();
+  for (int q = 0; q < d; ++q) primal[q] = 0;
+  for (int q = n; q < n + displaced_; ++q) primal[q] = primal_ * along[q];
+  if (hessian_part_ == HessianPart::exact) add_rows(primal, along, derivatives_->hessian[k], d, d);
+  const double* sigma = (*sigma_)[k];
+  for (int i = 0; i < sizes_.general_inequality(); ++i) {
+    const double* row = derivatives_->inequality[k] + i * d;
+    const double weight = sigma[i] * row_product(row, along, d);
+    add_rows(primal, &weight, row, 1, d);
+  }
+  const std::vector<ControlBound>& bounds = sizes_.phases[phase].bounds;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const int at = sizes_.at_control() + bounds[i].control;
+    primal[at] += sigma[sizes_.general_inequality() + int(i)] * bounds[i].sign * bounds[i].sign * along[at];
+  }
+  const double* equality = derivatives_->equality[k];
+  const double* lambda = x.multipliers[k];
+  const int m = sizes_.equalities_of(k);
+  add_rows(primal, lambda, equality, m, d);
+  for (int i = 0; i < m; ++i)
+    out.equality[std::size_t(i)] = row_product(equality + i * d, along, d) - (*dual_)[k][i] * lambda[i];
+  return out;
+}
+
+/// Before the right-hand sides are eliminated along the trajectory, or what `solved` leaves of them.
+void StageKkt::begin_elimination(const KktVector& right, const KktVector* solved) {
+  largest_ = 0;
+  for (int q = 0; q < border_; ++q) {
+    const Beside& at = beside_[std::size_t(q)];
+    border_right_[std::size_t(q)] = entry(right.primal, at) - (solved ? primal_ * entry(solved->primal, at) : 0);
+    border_eliminated_[std::size_t(q)] = 0;
+  }
+  if (!solved) return;
+  const Product& first = product(0, 0, *solved);
+  for (int q = 0; q < sizes_.node; ++q)
+    if (const int border = border_of_start(q); border >= 0)
+      border_right_[std::size_t(border)] -= first.primal[std::size_t(q)];
+}
+
+/// Of stage k, after those before.
+void StageKkt::eliminate(long k, std::size_t phase, const KktVector& right, const KktVector* solved) {
+  const int n = sizes_.node;
+  const int m = sizes_.equalities_of(k);
+  double* here = row_work_.data();
+  copy_row(right.primal.nodes[k + 1], n, here);
+  copy_row(right.primal.controls[k], sizes_.control, here + n);
+  copy_row(right.multipliers[k], m, here + displaced_);
+  std::fill(here + displaced_ + m, here + row_, 0.0);
+  if (solved) {
+    const Product& of = products_[std::size_t(k % 2)];
+    for (int q = 0; q < displaced_; ++q) here[q] -= of.primal[std::size_t(n + q)];
+    for (int i = 0; i < m; ++i) here[displaced_ + i] -= of.equality[std::size_t(i)];
+    if (const int last = duration_border_[phase]; last >= 0)
+      border_right_[std::size_t(last)] -= of.primal[std::size_t(sizes_.at_duration())];
+    if (k + 1 < sizes_.stages) {
+      const Product& next = product(k + 1, k + 1 == sizes_.phases[phase].end ? phase + 1 : phase, *solved);
+      for (int q = 0; q < n; ++q) here[q] -= next.primal[std::size_t(q)];
+    }
+  }
+  for_fixed(k, phase, [&](int at) { here[at] = 0; });
+  for (int q = 0; q < displaced_ + m; ++q) largest_ = larger(largest_, here[q]);
+  if (k > 0) subtract_combination(here, eliminated_[k - 1], 1, coupling_[k], n, row_);
+  for (int q = 0; q < columns_[std::size_t(k)]; ++q)
+    border_eliminated_[std::size_t(q)] -= sum_of_products(border_solved_[k] + q * row_, here, row_);
+  multiply(inverse_[k], here, block_of(k), row_, eliminated_[k]);
+}
+
+void StageKkt::end_elimination() {
+  for (int q = 0; q < border_; ++q) {
+    largest_ = larger(largest_, border_right_[std::size_t(q)]);
+    border_eliminated_[std::size_t(q)] += border_right_[std::size_t(q)];
   }
 }
 
-/// The solution for these right-hand sides; or they are what it left, and it is corrected.
-void StageKkt::eliminate(Solution which) {
+void StageKkt::eliminate_all(const KktVector& right, const KktVector* solved) {
+  begin_elimination(right, solved);
+  long k = 0;
+  for (std::size_t phase = 0; phase < sizes_.phases.size(); ++phase)
+    for (; k < sizes_.phases[phase].end; ++k) eliminate(k, phase, right, solved);
+  end_elimination();
+}
+
+/// The solution for what is eliminated, which `out` becomes or is corrected by.
+void StageKkt::substitute(Solution which, KktVector& out) {
   const int n = sizes_.node;
-  border_eliminated_ = border_right_;
-  for (long k = 0; k < sizes_.stages; ++k) {
-    double* here = eliminated_[k];
-    copy(right_[k], row_, here);
-    if (k > 0) {
-      const int v_before = target_of(k - 1);
-      for (int q = 0; q < n; ++q)
-        weights_[std::size_t(q)] = sum_of_products(inverse_[k - 1] + (v_before + q) * row_, eliminated_[k - 1], row_);
-      subtract_combination(here, weights_.data(), 1, coupling_[k], n, row_);
-    }
-    for (int q = 0; q < columns_[std::size_t(k)]; ++q)
-      border_eliminated_[std::size_t(q)] -= sum_of_products(border_solved_[k] + q * row_, here, row_);
+  const int c = sizes_.control;
+  const bool corrects = which == Solution::corrected;
+  if (!corrects) {
+    std::fill(out.primal.nodes[0], out.primal.nodes[0] + n, 0.0);
+    std::fill(out.primal.durations.begin(), out.primal.durations.end(), 0.0);
   }
+  const auto put = [corrects](const double* from, int count, double* to) {
+    for (int i = 0; i < count; ++i) to[i] = corrects ? to[i] + from[i] : from[i];
+  };
   for (int q = 0; q < border_; ++q) {
-    double sum = 0;
+    double& step = border_step_[std::size_t(q)];
+    step = 0;
     for (int r = 0; r < border_; ++r)
-      sum += corner_inverse_[std::size_t(q * padded(border_) + r)] * border_eliminated_[std::size_t(r)];
-    border_step_[std::size_t(q)] = sum;
-    border_solution_[std::size_t(q)] = which == Solution::first ? sum : border_solution_[std::size_t(q)] + sum;
+      step += corner_inverse_[std::size_t(q * padded(border_) + r)] * border_eliminated_[std::size_t(r)];
+    put(&step, 1, &entry(out.primal, beside_[std::size_t(q)]));
   }
   for (long k = sizes_.stages; k-- > 0;) {
-    const int v = target_of(k);
+    const int m = sizes_.equalities_of(k);
     double* here = eliminated_[k];
-    if (k + 1 < sizes_.stages)
-      for (int q = 0; q < n; ++q) here[v + q] -= sum_of_products(coupling_[k + 1] + q * row_, eliminated_[k + 1], row_);
-    double* solved = row_work_.data();
-    multiply(inverse_[k], here, v + n, row_, solved);
-    subtract_combination(solved, border_step_.data(), 1, border_solved_[k], columns_[std::size_t(k)], row_);
-    copy(solved, row_, here);
-    if (which == Solution::first) {
-      copy(solved, row_, solution_[k]);
-    } else {
-      add_multiple(solution_[k], 1, solved, row_);
+    if (k + 1 < sizes_.stages) {
+      for (int q = 0; q < n; ++q)
+        weights_[std::size_t(q)] = sum_of_products(coupling_[k + 1] + q * row_, eliminated_[k + 1], row_);
+      subtract_combination(here, weights_.data(), 1, inverse_[k], n, row_);
     }
+    subtract_combination(here, border_step_.data(), 1, border_solved_[k], columns_[std::size_t(k)], row_);
+    put(here, n, out.primal.nodes[k + 1]);
+    put(here + n, c, out.primal.controls[k]);
+    put(here + displaced_, m, out.multipliers[k]);
+    std::fill(out.multipliers[k] + m, out.multipliers[k] + sizes_.equality, 0.0);
   }
-}
-
-void StageKkt::give(KktVector& out) const {
-  const int n = sizes_.node;
-  const int c = sizes_.control;
-  std::fill(out.primal.nodes[0], out.primal.nodes[0] + n, 0.0);
-  std::fill(out.primal.durations.begin(), out.primal.durations.end(), 0.0);
-  for (int q = 0; q < border_; ++q) entry(out.primal, beside_[std::size_t(q)]) = border_solution_[std::size_t(q)];
-  for (long k = 0; k < sizes_.stages; ++k) {
-    const double* here = solution_[k];
-    const int v = target_of(k);
-    copy(here, c, out.primal.controls[k]);
-    copy(here + c, v - c, out.multipliers[k]);
-    for (int i = v - c; i < sizes_.equality; ++i) out.multipliers[k][i] = 0;
-    copy(here + v, n, out.primal.nodes[k + 1]);
-  }
-}
-
-/// Takes (the matrix) solution from the right-hand sides.
-void StageKkt::subtract_product() {
-  const int n = sizes_.node;
-  const int c = sizes_.control;
-  for (int q = 0; q < border_; ++q) {
-    double sum = primal_ * border_solution_[std::size_t(q)];
-    for (int r = 0; r < border_; ++r) sum += corner_[std::size_t(q * border_ + r)] * border_solution_[std::size_t(r)];
-    border_right_[std::size_t(q)] -= sum;
-  }
-  for (long k = 0; k < sizes_.stages; ++k) {
-    const int v = target_of(k);
-    const double* at = solution_[k];
-    double* left = right_[k];
-    subtract_combination(left, at, 1, diagonal_[k], v + n, row_);
-    for (int i = 0; i < v + n; ++i) left[i] -= (i >= c && i < v ? -dual_[k][i - c] : primal_) * at[i];
-    subtract_combination(left, border_solution_.data(), 1, bordered_[k], columns_[std::size_t(k)], row_);
-    for (int q = 0; q < columns_[std::size_t(k)]; ++q)
-      border_right_[std::size_t(q)] -= sum_of_products(bordered_[k] + q * row_, at, row_);
-    if (k == 0) continue;
-    const int v_before = target_of(k - 1);
-    subtract_combination(left, solution_[k - 1] + v_before, 1, coupling_[k], n, row_);
-    for (int q = 0; q < n; ++q) right_[k - 1][v_before + q] -= sum_of_products(coupling_[k] + q * row_, at, row_);
-  }
-}
-
-double StageKkt::largest_right() const {
-  double most = largest_entry(right_);
-  for (const double x : border_right_) most = std::max(most, std::abs(x));
-  return most;
 }
 
 void StageKkt::solve(const KktVector& right, KktVector& out) {
-  take(right);
-  double before = largest_right();
+  eliminate_all(right, nullptr);
+  solve_eliminated(right, out);
+}
+
+void StageKkt::solve_eliminated(const KktVector& right, KktVector& out) {
+  double before = largest_;
   const double enough = round_off_left * std::min(1.0, before);
-  eliminate(Solution::first);
-  subtract_product();
-  double left = largest_right();
-  for (int i = 0; i < most_corrections && left > enough; ++i) {
-    eliminate(Solution::corrected);
+  substitute(Solution::first, out);
+  for (int i = 0; i < most_corrections; ++i) {
+    eliminate_all(right, &out);
+    const double left = largest_;
+    if (!(left > enough) || (i > 0 && !(left < before))) break;
+    substitute(Solution::corrected, out);
     if (left * (left / before) <= enough) break;  // a correction leaves about the part that the one before has left
-    take(right);
-    subtract_product();
-    before = std::exchange(left, largest_right());
-    if (!(left < before)) break;
+    before = left;
   }
-  give(out);
 }
 
 }  // namespace lagroid

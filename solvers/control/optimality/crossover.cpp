@@ -81,11 +81,13 @@ void Crossover::assemble() {
   for (long k = 0; k < sizes_.stages; ++k) {
     double* rows = padded_.equality[k];
     for (int i = 0; i < sizes_.inequality; ++i) {
-      const double* row = derivatives_.inequality[k] + i * d;
-      if (active(k, i)) {
-        std::copy(row, row + d, rows + i * d);
+      std::fill(rows + i * d, rows + (i + 1) * d, 0.0);
+      if (!active(k, i)) continue;
+      if (const int bound = i - sizes_.general_inequality(); bound >= 0) {
+        const ControlBound& at = sizes_.phases[std::size_t(sizes_.phase_of(k))].bounds[std::size_t(bound)];
+        rows[i * d + sizes_.at_control() + at.control] = at.sign;
       } else {
-        std::fill(rows + i * d, rows + (i + 1) * d, 0.0);
+        std::copy(derivatives_.inequality[k] + i * d, derivatives_.inequality[k] + (i + 1) * d, rows + i * d);
       }
     }
     std::copy(derivatives_.equality[k], derivatives_.equality[k] + sizes_.equality * d, rows + gamma);
@@ -197,7 +199,9 @@ CrossoverReport Crossover::cross(const StageRows& costates, const StageRows& mul
   report.after = kkt_residual(transcription_, values_, derivatives_, costates_, multipliers_, gradient_);
   report.active = std::count(active_.begin(), active_.end(), true);
   for (long k = 0; k < sizes_.stages; ++k) report.cost += values_.cost[k][0];
-  if (!(report.after.largest() < report.before.largest())) report.status = CrossoverStatus::not_improved;
+  // From round-off to round-off, chance decides which is smaller.
+  if (!(report.after.largest() < std::max(report.before.largest(), round_off)))
+    report.status = CrossoverStatus::not_improved;
   return report;
 }
 

@@ -34,9 +34,9 @@ namespace lagroid {
 
 enum class CrossoverStatus {
   not_tried,     ///< the solve before it did not converge, or no crossover was asked for
-  crossed,       ///< to a solution whose residual is smaller
+  crossed,       ///< to a solution whose residual is smaller, or round-off
   degenerate,    ///< the active inequalities are not to be told, or the matrix has not the inertia of a minimum
-  not_improved,  ///< the residual did not become smaller: rounding, or too far away
+  not_improved,  ///< the residual did not become smaller: from too far away
   interrupted,   ///< `keep_going` said so
 };
 

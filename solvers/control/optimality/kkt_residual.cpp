@@ -1,5 +1,5 @@
-#include <lagroid/core/scalars/pack.hpp>
 #include <lagroid/solvers/control/optimality/kkt_residual.hpp>
+#include <lagroid/solvers/linear_algebra/row_sums.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,33 +13,22 @@ namespace {
 /// The larger; infinite where x is no number.
 double larger(double most, double x) { return std::isnan(x) ? HUGE_VAL : std::max(most, x); }
 
-/// A row of derivatives over the variables of a stage, and what it is multiplied by.
-struct WeightedRow {
-  double weight;
-  const double* row;
-};
-
-/// out += sum_i weight_i row_i, of so many variables from the first one on.
-template <class RowAt> void add_rows(const RowAt& row_at, int rows, int first, int variables, double* out) {
-  const auto add_few = [&]<int Count>(int q) {
-    auto sum = Pack<double, Count>::load(out + q);
-    for (int i = 0; i < rows; ++i) {
-      const WeightedRow each = row_at(i);
-      sum = sum + each.weight * Pack<double, Count>::load(each.row + first + q);
-    }
-    sum.store(out + q);
-  };
-  int q = 0;
-  for (; q + 4 <= variables; q += 4) add_few.template operator()<4>(q);
-  for (; q < variables; ++q) add_few.template operator()<1>(q);
+/// Adds what is along a stage's variables. The displacements of its two nodes stand after one another.
+void add_stage(const TranscriptionSizes& sizes, double factor, const double* along, long stage, std::size_t phase,
+               TrajectoryDisplacement& out) {
+  add_rows(out.nodes[stage], &factor, along, 1, 2 * sizes.node);
+  add_rows(out.controls[stage], &factor, along + sizes.at_control(), 1, sizes.control);
+  out.durations[phase] += factor * along[sizes.at_duration()];
 }
-/// The same of a whole stage. The displacements of its two nodes stand after one another.
-template <class RowAt>
-void add_rows_of_stage(const TranscriptionSizes& sizes, const RowAt& row_at, int rows, long stage, std::size_t phase,
-                       TrajectoryDisplacement& out) {
-  add_rows(row_at, rows, sizes.at_source, 2 * sizes.node, out.nodes[stage]);
-  add_rows(row_at, rows, sizes.at_control(), sizes.control, out.controls[stage]);
-  add_rows(row_at, rows, sizes.at_duration(), 1, &out.durations[phase]);
+/// Adds weighted rows of derivatives along a stage's variables.
+void add_rows_of_stage(const TranscriptionSizes& sizes, const double* weights, const double* rows, int count,
+                       long stage, std::size_t phase, TrajectoryDisplacement& out) {
+  for (int i = 0; i < count; ++i) add_stage(sizes, weights[i], rows + i * sizes.variables(), stage, phase, out);
+}
+void set_all(TrajectoryDisplacement& x, double to) {
+  lagroid::set_all(x.nodes, to);
+  lagroid::set_all(x.controls, to);
+  std::fill(x.durations.begin(), x.durations.end(), to);
 }
 void add_bounds(const TranscriptionSizes& sizes, const TranscriptionPhase& phase, const double* weights, double* out) {
   const int general = sizes.general_inequality();
@@ -71,22 +60,14 @@ double KktResidual::largest() const { return std::max({stationarity, violation, 
 void lagrangian_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
                          const StageRows& costates, const StageRows& weights, TrajectoryDisplacement& out) {
   const TranscriptionSizes& sizes = transcription.sizes();
-  const int d = sizes.variables();
-  set_all(out.nodes, 0);
-  set_all(out.controls, 0);
-  std::fill(out.durations.begin(), out.durations.end(), 0.0);
+  set_all(out, 0);
   long k = 0;
   for (std::size_t p = 0; p < sizes.phases.size(); ++p)
     for (; k < sizes.phases[p].end; ++k) {
-      const int equalities = sizes.equalities_of(k);
-      const auto row_at = [&](int i) -> WeightedRow {
-        if (i == 0) return {1, derivatives.gradient[k]};
-        --i;
-        if (i < equalities) return {costates[k][i], derivatives.equality[k] + i * d};
-        i -= equalities;
-        return {weights[k][i], derivatives.inequality[k] + i * d};
-      };
-      add_rows_of_stage(sizes, row_at, 1 + equalities + sizes.general_inequality(), k, p, out);
+      constexpr double one = 1;
+      add_rows_of_stage(sizes, &one, derivatives.gradient[k], 1, k, p, out);
+      add_rows_of_stage(sizes, costates[k], derivatives.equality[k], sizes.equalities_of(k), k, p, out);
+      add_rows_of_stage(sizes, weights[k], derivatives.inequality[k], sizes.general_inequality(), k, p, out);
       add_bounds(sizes, sizes.phases[p], weights[k], out.controls[k]);
     }
   keep_fixed(transcription, out);
@@ -95,12 +76,10 @@ void lagrangian_gradient(const Transcription& transcription, const StageDerivati
 void add_inequality_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
                              const StageRows& weights, TrajectoryDisplacement& out) {
   const TranscriptionSizes& sizes = transcription.sizes();
-  const int d = sizes.variables();
   long k = 0;
   for (std::size_t p = 0; p < sizes.phases.size(); ++p)
     for (; k < sizes.phases[p].end; ++k) {
-      const auto row_at = [&](int i) -> WeightedRow { return {weights[k][i], derivatives.inequality[k] + i * d}; };
-      add_rows_of_stage(sizes, row_at, sizes.general_inequality(), k, p, out);
+      add_rows_of_stage(sizes, weights[k], derivatives.inequality[k], sizes.general_inequality(), k, p, out);
       add_bounds(sizes, sizes.phases[p], weights[k], out.controls[k]);
     }
   keep_fixed(transcription, out);
@@ -130,50 +109,57 @@ KktResidual kkt_residual(const Transcription& transcription, const StageValues& 
   return out;
 }
 
-void kkt_rounding(const Transcription& transcription, const StageDerivatives& derivatives, const StageRows& costates,
-                  const StageRows& multipliers, KktRounding& out) {
+void lagrangian_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
+                         const StageRows& costates, const StageRows& multipliers, TrajectoryDisplacement& gradient,
+                         KktRounding& rounding) {
   const TranscriptionSizes& sizes = transcription.sizes();
   const int n = sizes.node;
   const int c = sizes.control;
-  transcription.sizes_of_displaced(out.at);
-  set_all(out.gradient.nodes, 0);
-  set_all(out.gradient.controls, 0);
-  std::fill(out.gradient.durations.begin(), out.gradient.durations.end(), 0.0);
+  const int d = sizes.variables();
+  const int general = sizes.general_inequality();
+  transcription.sizes_of_displaced(rounding.at);
+  set_all(gradient, 0);
+  set_all(rounding.gradient, 0);
+  double* size = rounding.size.data();
+  double* slopes = rounding.slopes.data();
+  double* sizes_of_weights = rounding.sizes_of_weights.data();
+  double* sum = rounding.sum.data();
+  double* sum_of_sizes = rounding.sum_of_sizes.data();
   long k = 0;
   for (std::size_t p = 0; p < sizes.phases.size(); ++p)
     for (; k < sizes.phases[p].end; ++k) {
-      const double* at_nodes = out.at.nodes[k];
-      const double* at_controls = out.at.controls[k];
-      double* nodes = out.gradient.nodes[k];
-      double* controls = out.gradient.controls[k];
-      double& duration = out.gradient.durations[p];
-      // Adds |weight row| to the sizes of the gradient's terms. Returns what a function with that row is known to.
-      const auto take = [&](double weight, const double* row) {
-        const double unit = KktRounding::ulps * std::abs(weight);
-        double sum = 0;
-        const auto add = [&](double slope, double size, double& term) {
-          sum += std::abs(slope) * size;
-          term += unit * std::abs(slope);
-        };
-        for (int q = 0; q < 2 * n; ++q) add(row[q], at_nodes[q], nodes[q]);
-        for (int q = 0; q < c; ++q) add(row[2 * n + q], at_controls[q], controls[q]);
-        add(row[2 * n + c], out.at.durations[p], duration);
-        return KktRounding::ulps * sum;
+      copy_row(rounding.at.nodes[k], 2 * n, size);
+      copy_row(rounding.at.controls[k], c, size + 2 * n);
+      size[2 * n + c] = rounding.at.durations[p];
+      std::fill(sum, sum + d, 0.0);
+      std::fill(sum_of_sizes, sum_of_sizes + d, 0.0);
+      // Adds weighted rows, and their sizes. Writes what functions with these rows are known to.
+      const auto take = [&](const double* weights, const double* rows, int count, double* known_to) {
+        for (int q = 0; q < count * d; ++q) slopes[q] = std::abs(rows[q]);
+        for (int i = 0; i < count; ++i) {
+          sizes_of_weights[i] = std::abs(weights[i]);
+          known_to[i] = KktRounding::ulps * row_product(slopes + i * d, size, d);
+        }
+        add_rows(sum, weights, rows, count, d);
+        add_rows(sum_of_sizes, sizes_of_weights, slopes, count, d);
       };
-      take(1, derivatives.gradient[k]);
-      for (int i = 0; i < sizes.equalities_of(k); ++i)
-        out.equality[k][i] = take(costates[k][i], derivatives.equality[k] + i * sizes.variables());
-      const int general = sizes.general_inequality();
-      for (int i = 0; i < general; ++i)
-        out.inequality[k][i] = take(multipliers[k][i], derivatives.inequality[k] + i * sizes.variables());
+      constexpr double one = 1;
+      double of_cost = 0;
+      take(&one, derivatives.gradient[k], 1, &of_cost);
+      take(costates[k], derivatives.equality[k], sizes.equalities_of(k), rounding.equality[k]);
+      take(multipliers[k], derivatives.inequality[k], general, rounding.inequality[k]);
       for (std::size_t i = 0; i < sizes.phases[p].bounds.size(); ++i) {
         const ControlBound& bound = sizes.phases[p].bounds[i];
-        const double unit = KktRounding::ulps * std::abs(bound.sign);
-        out.inequality[k][general + int(i)] = unit * at_controls[bound.control];
-        controls[bound.control] += unit * multipliers[k][general + int(i)];
+        const int at = general + int(i);
+        rounding.inequality[k][at] = KktRounding::ulps * std::abs(bound.sign) * size[2 * n + bound.control];
+        sum[2 * n + bound.control] += multipliers[k][at] * bound.sign;
+        sum_of_sizes[2 * n + bound.control] += multipliers[k][at] * std::abs(bound.sign);
       }
+      add_stage(sizes, 1, sum, k, p, gradient);
+      add_stage(sizes, KktRounding::ulps, sum_of_sizes, k, p, rounding.gradient);
     }
-  keep_fixed(transcription, out.gradient);
+  keep_fixed(transcription, gradient);
+  keep_fixed(transcription, rounding.gradient);
 }
 
 double largest_violation(const TranscriptionSizes& sizes, const StageValues& values, const KktRounding& rounding) {

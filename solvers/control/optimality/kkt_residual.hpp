@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace lagroid {
 
@@ -50,19 +51,29 @@ struct KktRounding {
       : equality(sizes.stages, sizes.equality),
         inequality(sizes.stages, sizes.inequality),
         gradient(sizes),
-        at(sizes) {}
+        at(sizes),
+        size(std::size_t(sizes.variables())),
+        sum(size),
+        sum_of_sizes(size),
+        sizes_of_weights(std::size_t(1 + sizes.equality + sizes.inequality)),
+        slopes(sizes_of_weights.size() * size.size()) {}
   StageRows equality;
   StageRows inequality;
   TrajectoryDisplacement gradient;  ///< zero along what is fixed
   TrajectoryDisplacement at;        ///< |x_j|, of what is displaced
+  // Of a stage: workspace.
+  std::vector<double> size, sum, sum_of_sizes;  // along its variables
+  std::vector<double> sizes_of_weights, slopes;
 
   static constexpr double ulps = 10 * std::numeric_limits<double>::epsilon();
   /// The largest sum of magnitudes that a component of the gradient is made of.
   double largest_term() const { return largest_entry(gradient) / ulps; }
 };
 
-void kkt_rounding(const Transcription& transcription, const StageDerivatives& derivatives, const StageRows& costates,
-                  const StageRows& multipliers, KktRounding& out);
+/// The Lagrangian's gradient and what rounding may leave, in one pass.
+void lagrangian_gradient(const Transcription& transcription, const StageDerivatives& derivatives,
+                         const StageRows& costates, const StageRows& multipliers, TrajectoryDisplacement& gradient,
+                         KktRounding& rounding);
 
 /// What of |x| is more than rounding leaves; no number where x is none.
 inline double above(double rounding, double x) { return std::abs(x) <= rounding ? 0 : std::abs(x) - rounding; }

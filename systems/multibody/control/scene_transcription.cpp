@@ -43,6 +43,7 @@ SceneTranscription::SceneTranscription(ControlledScene& scene, ScenePath start, 
   TranscriptionPhase& phase = sizes_.phases.emplace_back();
   phase.end = sizes_.stages;
   phase.duration_is_free = task.duration_is_free;
+  for (const Bound& each : bounds_) phase.bounds.push_back({each.control, each.sign});
   sizes_.conditions.assign(std::size_t(sizes_.stages), scene.joints());
   sizes_.conditions.back() = last;
   variables_ = sizes_.variables();
@@ -133,9 +134,6 @@ void SceneTranscription::derivatives(const StageRows& lambda, const StageRows& z
     add_cost(block(k));
     add_kinetic(k, block(k));
     if (scene_.is_damped()) add_dampers(k, block(k));
-    double* bounds = out.inequality[k] + before_bounds() * variables_;
-    for (std::size_t b = 0; b < bounds_.size(); ++b)
-      bounds[int(b) * variables_ + sizes_.at_control() + bounds_[b].control] = bounds_[b].sign;
   }
   for (long k = 0; k <= sizes_.stages; ++k) {
     const ControlledNode& node = now_.nodes[std::size_t(k)];

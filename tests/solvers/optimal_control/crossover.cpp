@@ -96,6 +96,22 @@ TEST(Crossovers, CorrectAGuessOrSayThatTheyCannot) {
   EXPECT_GT(largest_entry(crossover.inequality_multipliers()), 1e-3);
 }
 
+// There is no smaller residual than round-off, so that of two that are, either may be the smaller.
+TEST(Crossovers, LeadFromRoundOffToRoundOff) {
+  const auto task = rest_to_rest();
+  TranscriptionOf<DoubleIntegrator> transcription(task, straight_trajectory(task, 100));
+  InteriorPoint solver(transcription);
+  ASSERT_TRUE(solver.solve().converged());
+  Crossover crossover(transcription);
+  ASSERT_TRUE(crossover.cross(solver.costates(), solver.inequality_multipliers()).crossed());
+  for (int again = 0; again < 5; ++again) {
+    const StageRows costates = crossover.costates(), multipliers = crossover.inequality_multipliers();
+    const CrossoverReport report = crossover.cross(costates, multipliers);
+    EXPECT_TRUE(report.crossed()) << to_string(report.status);
+    EXPECT_LE(report.after.largest(), 1e-13);
+  }
+}
+
 /// To go unevenly is cheaper, so that a steady way is the dearest.
 struct Sprinter : ControlledFlow<Sprinter, Pair<1>, 1> {
   template <class Q, class S> Vector<S, 1> flow(const Q&, const Vector<S, 1>& u) const { return u; }
