@@ -131,6 +131,13 @@ void fail_where_not_finite(GradientTable& table) {
   }
 }
 
+/// A reason without the name of its number, by which alone it may differ from another's.
+std::string without_name(std::string why, const std::string& number) {
+  const std::string name = number.substr(number.find('.') + 1);
+  for (std::size_t at = 0; (at = why.find(name, at)) != std::string::npos;) why.erase(at, name.size());
+  return why;
+}
+
 }  // namespace
 
 std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::string& word, const std::string& name) {
@@ -222,12 +229,24 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
 }
 
 std::vector<std::string> notes_on_left_out(const GradientSubject& subject, const GradientColumns& columns) {
-  std::vector<std::string> names;
-  for (const int i : columns.left_out) names.push_back(subject.refused[std::size_t(i)].first);
-  if (names.empty()) return {};
-  const std::string& why = subject.refused[std::size_t(columns.left_out.front())].second;
-  if (names.size() == 1) return {fmt::format("{} is left out: {}", names.front(), why)};
-  return {fmt::format("{} are left out; {}: {}", fmt::join(names, ", "), names.front(), why)};
+  struct Reason {
+    std::string key, why;
+    std::vector<std::string> names;
+  };
+  std::vector<Reason> reasons;
+  for (const int i : columns.left_out) {
+    const auto& [name, why] = subject.refused[std::size_t(i)];
+    const std::string key = without_name(why, name);
+    auto same = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& each) { return each.key == key; });
+    if (same == reasons.end()) same = reasons.insert(reasons.end(), {key, why, {}});
+    same->names.push_back(name);
+  }
+  std::vector<std::string> out;
+  for (const Reason& each : reasons)
+    out.push_back(each.names.size() == 1 ? fmt::format("{} is left out: {}", each.names.front(), each.why)
+                                         : fmt::format("{} are left out; {}: {}", fmt::join(each.names, ", "),
+                                                       each.names.front(), each.why));
+  return out;
 }
 
 void find_refused(GradientSubject& subject,

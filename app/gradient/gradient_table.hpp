@@ -60,7 +60,7 @@ struct GradientColumns {
 };
 /// Throws GradientRefused for a word that chooses nothing, or nothing that has a derivative.
 GradientColumns columns_of(const GradientSubject& subject, const std::vector<std::string>& words);
-/// Which numbers are left out and why, in one line; none where there are none.
+/// Which numbers are left out and why, a line for each reason.
 std::vector<std::string> notes_on_left_out(const GradientSubject& subject, const GradientColumns& columns);
 /// The names of its parameters.
 std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns);

@@ -62,14 +62,14 @@ std::vector<EventFunction> kick_of(const Event& event, const Observables& node) 
 }
 
 /// Where among the numbers of all momenta those that it kicks begin.
-std::size_t require_kick(const Event& event, const Motion& motion, const Changeable& changeable) {
+std::size_t require_kick(const Event& event, const Changeable& changeable) {
   if (event.kick.empty()) {
     if (!event.body.empty()) throw RunError(fmt::format("{}: it names a body, which nothing kicks", named(event)));
     return 0;
   }
   if (changeable.momenta.empty())
-    throw RunError(
-        fmt::format("{}: nothing can be added to the momentum on the way: {}", named(event), motion.traits().name));
+    throw RunError(fmt::format(
+        "{}: nothing can be added to the momentum inside of the steps of this run: leave out kick", named(event)));
   std::size_t first = 0;
   std::vector<std::string> names;
   for (const Changeable::Momentum& each : changeable.momenta) {
@@ -181,7 +181,7 @@ EventWatch::EventWatch(const std::vector<Event>& events, Motion& motion)
     } catch (const std::invalid_argument& error) {
       throw RunError(fmt::format("{}: {}", named(event), error.what()));
     }
-    watches_.back().kicked_at = require_kick(event, motion, changeable);
+    watches_.back().kicked_at = require_kick(event, changeable);
     require_set(event, motion, changeable);
     require_switches(event, motion, changeable);
     watches_.back().function.next(watches_.back().value(node), time_);
