@@ -127,7 +127,7 @@ TEST_F(CommandLine, SolutionsOfOptimalControlAreCertified) {
     ASSERT_EQ(suites.size(), 2U) << name;
     const auto& laws = suites.at(1).at("laws");
     const auto has = [&](const std::string& law) {
-      return std::any_of(laws.begin(), laws.end(), [&](const auto& each) { return each.at("name") == law; });
+      return std::any_of(laws.begin(), laws.end(), [&](const auto& each) { return each.at("law") == law; });
     };
     EXPECT_TRUE(has("the KKT residual vanishes")) << name;
     EXPECT_TRUE(has("complementarity")) << name;

@@ -54,7 +54,7 @@ nightly = {
                       lambda: network("https://doi.org")),
     "nightly-headers": ("examples of headers compile", r"^Documentation\.ExamplesOfHeadersCompile$", None),
     "nightly-python": ("the wheel in an environment of its own", r"^Python\.install$", None),
-    "nightly-web": ("the laboratory of the browser: build, page, ends as the program's", r"^Web\.",
+    "nightly-web": ("the laboratory of the browser: build, page, ends as the program's, lessons", r"^Web\.|^Documentation\..*Laborator",
                     lambda: "" if shutil.which("emcc") else "no emscripten (`./lagroid web` installs it)"),
     "consumers": ("projects that use an installation, by find_package and pkg-config", r"^(installed|own_program)_whole$",
                   None),

@@ -147,9 +147,11 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
   order.name = "the error falls as declared";
   order.samples = 1;
   order.tolerance = subject.traits.order > 6 ? 0.5 : 0.3;
-  // Errors must be above round-off: with steps as long as the scene's, or longer ones.
-  double measured = std::numeric_limits<double>::quiet_NaN();
-  for (double longer = 1; longer <= 32 && std::isnan(measured); longer *= 2) try {
+  // Errors must be above round-off: with steps as long as the scene's, or longer ones, of which those count where the
+  // slopes of errors agree best.
+  constexpr double agree = 0.5;
+  MeasuredOrder measured;
+  for (double longer = 1; longer <= 32 && !(measured.spread <= agree); longer *= 2) try {
       const double later = steps * h * longer;
       OrderProblem problem;
       problem.coarsest = steps;
@@ -171,14 +173,14 @@ inline LawReport sized_step_laws(const SizedStepSubject& subject) {
         both << z.position, z.momentum;
         return in_units(both);
       };
-      measured = measured_order(problem);
+      if (const MeasuredOrder found = measure_order(problem); found.spread < measured.spread) measured = found;
     } catch (const NotSampled& none) {
-      order.skipped_because = none.what();
+      if (std::isnan(measured.order)) order.skipped_because = none.what();
       break;
     }
-  order.unjudged = std::isnan(measured);
+  order.unjudged = std::isnan(measured.order);
   if (!order.unjudged) {
-    order.worst = std::max(0.0, subject.traits.order - measured);  // more is no fault
+    order.worst = std::max(0.0, subject.traits.order - measured.order);  // more is no fault
   } else if (order.skipped_because.empty()) {
     order.skipped_because = "no errors above round-off";
   }
