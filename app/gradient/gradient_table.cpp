@@ -131,10 +131,12 @@ void fail_where_not_finite(GradientTable& table) {
   }
 }
 
-/// A reason without the name of its number, by which alone it may differ from another's.
-std::string without_name(std::string why, const std::string& number) {
+/// A reason without the name of its number and without what it says in parentheses, as the numbers of one case.
+std::string kind_of_reason(std::string why, const std::string& number) {
   const std::string name = number.substr(number.find('.') + 1);
   for (std::size_t at = 0; (at = why.find(name, at)) != std::string::npos;) why.erase(at, name.size());
+  if (const std::size_t open = why.find('('), close = why.rfind(')'); open < close && close != std::string::npos)
+    why.erase(open, close - open + 1);
   return why;
 }
 
@@ -230,15 +232,15 @@ GradientColumns columns_of(const GradientSubject& subject, const std::vector<std
 
 std::vector<std::string> notes_on_left_out(const GradientSubject& subject, const GradientColumns& columns) {
   struct Reason {
-    std::string key, why;
+    std::string kind, why;
     std::vector<std::string> names;
   };
   std::vector<Reason> reasons;
   for (const int i : columns.left_out) {
     const auto& [name, why] = subject.refused[std::size_t(i)];
-    const std::string key = without_name(why, name);
-    auto same = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& each) { return each.key == key; });
-    if (same == reasons.end()) same = reasons.insert(reasons.end(), {key, why, {}});
+    const std::string kind = kind_of_reason(why, name);
+    auto same = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& each) { return each.kind == kind; });
+    if (same == reasons.end()) same = reasons.insert(reasons.end(), {kind, why, {}});
     same->names.push_back(name);
   }
   std::vector<std::string> out;
