@@ -27,6 +27,13 @@ class Gradients(unittest.TestCase):
         self.assertEqual(told.returncode, 3, told.stderr)
         self.assertIn("has no root", told.stderr)
 
+    def test_growth_of_errors_does_not_depend_on_units(self):
+        grew = [json.loads(run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", f"parameters.mass={mass}", "--of",
+                               "final.q", "--wrt", "initial.q", "--json").stdout)["growth"] for mass in ("1.0", "1e200", "1e-200")]
+        self.assertGreater(grew[0], 5)
+        for other in grew[1:]:
+            self.assertAlmostEqual(other, grew[0], delta=1e-6 * grew[0])
+
     def test_gradients_in_transformed_time(self):
         words = (of_part("kepler").with_name("lagroid-gradient"), examples / "kepler.toml", "--set", "time.mode=transformed", "--set", "time.steps=50")
         for order in (2, 6):

@@ -109,7 +109,7 @@ double RunGrowth::largest(const Eigen::MatrixXd& observed_along, const Units& le
     if (!is_of_state_[std::size_t(i)] || left_out.contains(units_[std::size_t(i)])) continue;
     const double size = sizes_.at(units_[std::size_t(i)]);
     if (!observed_along.row(i).allFinite()) return std::numeric_limits<double>::infinity();
-    if (size > 0) out = std::max(out, observed_along.row(i).norm() / size);
+    if (size > 0) out = std::max(out, observed_along.row(i).stableNorm() / size);
   }
   return out;
 }
@@ -126,7 +126,7 @@ RunGrowth::Units RunGrowth::units_at_rest() const {
     const auto at = Eigen::Index(i);
     auto& [number, change] = units[units_[i]];
     number = std::max({number, std::abs(start(at)), std::abs(first.values(at))});
-    change = std::max(change, first.derivatives.row(at).norm());
+    change = std::max(change, first.derivatives.row(at).stableNorm());
   }
   Units out;
   for (const auto& [unit, of] : units)
