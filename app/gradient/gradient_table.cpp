@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -134,7 +135,15 @@ void fail_where_not_finite(GradientTable& table) {
 /// A reason without the name of its number and without what it says in parentheses, as the numbers of one case.
 std::string kind_of_reason(std::string why, const std::string& number) {
   const std::string name = number.substr(number.find('.') + 1);
-  for (std::size_t at = 0; (at = why.find(name, at)) != std::string::npos;) why.erase(at, name.size());
+  const auto is_part_of_word = [&](std::size_t at) {
+    return at < why.size() && (std::isalnum(static_cast<unsigned char>(why[at])) != 0 || why[at] == '_');
+  };
+  for (std::size_t at = 0; (at = why.find(name, at)) != std::string::npos;)
+    if ((at > 0 && is_part_of_word(at - 1)) || is_part_of_word(at + name.size())) {
+      ++at;
+    } else {
+      why.erase(at, name.size());
+    }
   if (const std::size_t open = why.find('('), close = why.rfind(')'); open < close && close != std::string::npos)
     why.erase(open, close - open + 1);
   return why;

@@ -42,6 +42,11 @@ struct TranscriptionSizes {
 
   /// How many rows of gamma are no bounds of controls.
   int general_inequality() const { return inequality - int(phases.front().bounds.size()); }
+  /// The bound of a control that a row of a stage's gamma is; null where it is another inequality.
+  const ControlBound* bound_of(long stage, int row) const {
+    const int i = row - general_inequality();
+    return i < 0 ? nullptr : &phases[std::size_t(phase_of(stage))].bounds[std::size_t(i)];
+  }
   int variables() const { return 2 * node + control + 1; }
   int equalities_of(long stage) const { return equality - node_equality + conditions[std::size_t(stage)]; }
   int phase_of(long stage) const {
@@ -98,13 +103,20 @@ inline double dot(const StageRows& a, const StageRows& b) {
   for (std::size_t i = 0; i < a.numbers().size(); ++i) sum += a.numbers()[i] * b.numbers()[i];
   return sum;
 }
+/// The larger of `most` and |x|; infinite where x is no number.
+inline double larger_magnitude(double most, double x) { return std::isnan(x) ? HUGE_VAL : std::max(most, std::abs(x)); }
 /// The largest magnitude; infinite where an entry is no number.
 inline double largest_entry(const StageRows& rows) {
   double most = 0;
-  for (const double x : rows.numbers()) most = std::isnan(x) ? HUGE_VAL : std::max(most, std::abs(x));
+  for (const double x : rows.numbers()) most = larger_magnitude(most, x);
   return most;
 }
 
+inline void set_all(TrajectoryDisplacement& x, double to) {
+  set_all(x.nodes, to);
+  set_all(x.controls, to);
+  std::fill(x.durations.begin(), x.durations.end(), to);
+}
 inline void add(TrajectoryDisplacement& a, double factor, const TrajectoryDisplacement& b) {
   add(a.nodes, factor, b.nodes);
   add(a.controls, factor, b.controls);
@@ -117,7 +129,7 @@ inline double dot(const TrajectoryDisplacement& a, const TrajectoryDisplacement&
 }
 inline double largest_entry(const TrajectoryDisplacement& x) {
   double most = std::max(largest_entry(x.nodes), largest_entry(x.controls));
-  for (const double t : x.durations) most = std::isnan(t) ? HUGE_VAL : std::max(most, std::abs(t));
+  for (const double t : x.durations) most = larger_magnitude(most, t);
   return most;
 }
 inline void negate(TrajectoryDisplacement& x) {

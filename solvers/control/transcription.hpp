@@ -67,11 +67,7 @@ class Transcription {
 
   /// How large the numbers are that a displacement changes, where the trajectory stands: what they round to bounds how
   /// well constraints can be satisfied. One, where nothing is known of them.
-  virtual void sizes_of_displaced(TrajectoryDisplacement& out) const {
-    set_all(out.nodes, 1);
-    set_all(out.controls, 1);
-    std::fill(out.durations.begin(), out.durations.end(), 1.0);
-  }
+  virtual void sizes_of_displaced(TrajectoryDisplacement& out) const { set_all(out, 1); }
 
   /// Tries the trajectory displaced by `fraction` of `by`; `accept` lets it stand.
   virtual void try_displacement(const TrajectoryDisplacement& by, double fraction) = 0;

@@ -172,14 +172,14 @@ inline LawReport transcription_laws(Transcription& subject, int samples = 5, std
         equality = std::max(equality,
                             defect(slope(derivatives.equality[k] + i * d),
                                    along.differences([&](const StageValues& at) { return at.equality[k][i]; }).first));
-      const auto slope_of_bound = [&](int i) {
-        const ControlBound& at = sizes.phases[std::size_t(sizes.phase_of(k))].bounds[std::size_t(i)];
-        return at.sign * x[std::size_t(sizes.at_control() + at.control)];
+      const auto slope_of_inequality = [&](int i) {
+        const ControlBound* bound = sizes.bound_of(k, i);
+        return bound ? bound->sign * x[std::size_t(sizes.at_control() + bound->control)]
+                     : slope(derivatives.inequality[k] + i * d);
       };
-      const int general = sizes.general_inequality();
       for (int i = 0; i < sizes.inequality; ++i)
         inequality = std::max(
-            inequality, defect(i < general ? slope(derivatives.inequality[k] + i * d) : slope_of_bound(i - general),
+            inequality, defect(slope_of_inequality(i),
                                along.differences([&](const StageValues& at) { return at.inequality[k][i]; }).first));
       double curvature = 0;
       for (int q = 0; q < d; ++q) {

@@ -74,14 +74,14 @@ TEST(GradientTables, SayEachReasonOfWhatIsLeftOut) {
   find_refused(subject);
   subject.refused.emplace_back("parameters.colour", "it is known");
   subject.refused.emplace_back("parameters.shade", "shade is known (as 1)");
-  subject.refused.emplace_back("parameters.tint", "tint is known (as 2)");
+  subject.refused.emplace_back("parameters.n", "n is known (as 2)");  // a letter that is in other words, too
   GradientColumns columns;
   for (int i = 0; i < int(subject.refused.size()); ++i) columns.left_out.push_back(i);
   const std::vector<std::string> notes = notes_on_left_out(subject, columns);
   ASSERT_EQ(notes.size(), 3u);
   EXPECT_NE(notes[0].find("weights.1 are left out; parameters.weights.0: parameter weights.0"), std::string::npos);
   EXPECT_EQ(notes[1], "parameters.colour is left out: it is known");
-  EXPECT_EQ(notes[2], "parameters.shade, parameters.tint are left out; parameters.shade: shade is known (as 1)");
+  EXPECT_EQ(notes[2], "parameters.shade, parameters.n are left out; parameters.shade: shade is known (as 1)");
 }
 
 TEST(GradientTables, RefuseWhatIsNamedAndCarriesNoDerivative) {

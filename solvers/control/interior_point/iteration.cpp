@@ -172,10 +172,8 @@ void InteriorPoint::newton_side(const StageRows& equality, const StageRows& gap)
 /// dgamma along the displacement in `step_`.
 double InteriorPoint::change_of_inequality(long stage, int i) const {
   const int n = sizes_.node;
-  if (const int bound = i - sizes_.general_inequality(); bound >= 0) {
-    const ControlBound& at = sizes_.phases[std::size_t(sizes_.phase_of(stage))].bounds[std::size_t(bound)];
-    return at.sign * step_.primal.controls[stage][at.control];
-  }
+  if (const ControlBound* bound = sizes_.bound_of(stage, i))
+    return bound->sign * step_.primal.controls[stage][bound->control];
   const double* row = derivatives_.inequality[stage] + i * sizes_.variables();
   double change = row[sizes_.at_duration()] * step_.primal.durations[std::size_t(sizes_.phase_of(stage))];
   for (int q = 0; q < n; ++q)

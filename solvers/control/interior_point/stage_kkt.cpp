@@ -20,9 +20,6 @@ void multiply(const double* a, const double* x, int rows, int row, double* out) 
   add_combination(out, x, 1, a, rows, row);
 }
 
-/// The larger magnitude; infinite where x is no number.
-double larger(double most, double x) { return std::isnan(x) ? HUGE_VAL : std::max(most, std::abs(x)); }
-
 }  // namespace
 
 StageKkt::StageKkt(const Transcription& transcription) : StageKkt(transcription, transcription.sizes()) {}
@@ -327,7 +324,7 @@ void StageKkt::eliminate(long k, std::size_t phase, const KktVector& right, cons
     }
   }
   for_fixed(k, phase, [&](int at) { here[at] = 0; });
-  for (int q = 0; q < displaced_ + m; ++q) largest_ = larger(largest_, here[q]);
+  for (int q = 0; q < displaced_ + m; ++q) largest_ = larger_magnitude(largest_, here[q]);
   if (k > 0) subtract_combination(here, eliminated_[k - 1], 1, coupling_[k], n, row_);
   for (int q = 0; q < columns_[std::size_t(k)]; ++q)
     border_eliminated_[std::size_t(q)] -= sum_of_products(border_solved_[k] + q * row_, here, row_);
@@ -336,7 +333,7 @@ void StageKkt::eliminate(long k, std::size_t phase, const KktVector& right, cons
 
 void StageKkt::end_elimination() {
   for (int q = 0; q < border_; ++q) {
-    largest_ = larger(largest_, border_right_[std::size_t(q)]);
+    largest_ = larger_magnitude(largest_, border_right_[std::size_t(q)]);
     border_eliminated_[std::size_t(q)] += border_right_[std::size_t(q)];
   }
 }

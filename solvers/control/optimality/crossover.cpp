@@ -63,9 +63,7 @@ KktResidual Crossover::residual_of_active() {
   out.stationarity = largest_entry(gradient_);
   out.violation = 0;
   for (long k = 0; k < sizes_.stages; ++k) {
-    const auto take = [&](double x) {
-      out.violation = std::isnan(x) ? HUGE_VAL : std::max(out.violation, std::abs(x));
-    };
+    const auto take = [&](double x) { out.violation = larger_magnitude(out.violation, x); };
     for (int i = 0; i < sizes_.equalities_of(k); ++i) take(values_.equality[k][i]);
     for (int i = 0; i < sizes_.inequality; ++i)
       if (active(k, i)) take(values_.inequality[k][i]);
@@ -83,9 +81,8 @@ void Crossover::assemble() {
     for (int i = 0; i < sizes_.inequality; ++i) {
       std::fill(rows + i * d, rows + (i + 1) * d, 0.0);
       if (!active(k, i)) continue;
-      if (const int bound = i - sizes_.general_inequality(); bound >= 0) {
-        const ControlBound& at = sizes_.phases[std::size_t(sizes_.phase_of(k))].bounds[std::size_t(bound)];
-        rows[i * d + sizes_.at_control() + at.control] = at.sign;
+      if (const ControlBound* bound = sizes_.bound_of(k, i)) {
+        rows[i * d + sizes_.at_control() + bound->control] = bound->sign;
       } else {
         std::copy(derivatives_.inequality[k] + i * d, derivatives_.inequality[k] + (i + 1) * d, rows + i * d);
       }

@@ -25,11 +25,6 @@ void add_rows_of_stage(const TranscriptionSizes& sizes, const double* weights, c
                        long stage, std::size_t phase, TrajectoryDisplacement& out) {
   for (int i = 0; i < count; ++i) add_stage(sizes, weights[i], rows + i * sizes.variables(), stage, phase, out);
 }
-void set_all(TrajectoryDisplacement& x, double to) {
-  lagroid::set_all(x.nodes, to);
-  lagroid::set_all(x.controls, to);
-  std::fill(x.durations.begin(), x.durations.end(), to);
-}
 void add_bounds(const TranscriptionSizes& sizes, const TranscriptionPhase& phase, const double* weights, double* out) {
   const int general = sizes.general_inequality();
   for (std::size_t i = 0; i < phase.bounds.size(); ++i)
