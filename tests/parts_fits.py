@@ -153,6 +153,20 @@ class Fits(unittest.TestCase):
             refused("t,q\n0,1\n", "--combination a: it is given twice", *twice)
             refused("", "no header; the first line names t and columns of the run")
 
+    def test_data_that_tell_nothing_are_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            text = (examples / "measured_pendulum.csv").read_text()
+            rows = [row for row in text.splitlines() if not row.startswith("#")]
+            late = pathlib.Path(folder) / "late.csv"
+            moved = [",".join([f"{float(t) + 900:g}", *rest]) for t, *rest in (row.split(",") for row in rows[1:])]
+            late.write_text("\n".join([rows[0], *moved]) + "\n")
+            # It swings no more by then, whatever its length is.
+            told = run(of_part("damped_pendulum"), "fit", examples / "damped_pendulum.toml", late, "--wrt",
+                       "initial,parameters.length", "--json")
+            found = json.loads(told.stdout)
+            self.assertEqual(found["rank"], 0)
+            self.assertEqual([each["deviation"] for each in found["unknowns"]], 3 * [None])
+
     def test_residuals_are_written_beside_what_was_read_and_never_over_it(self):
         with tempfile.TemporaryDirectory() as folder:
             data = self.measured(folder, "exact", 0.0)

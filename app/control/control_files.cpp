@@ -27,6 +27,19 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 7> files{"control.h5", "trajectory.csv", "summary.json", "summary.txt",
                                            "plot.gp",    "plot.svg",       "plot.png"};
 
+/// What stands behind a cost.
+std::string_view in_words(Curvature curvature) {
+  switch (curvature) {
+    case Curvature::open:
+      break;
+    case Curvature::strict_minimum:
+      return ", a strict local minimum";
+    case Curvature::saddle:
+      return ", a saddle: near it are motions that cost less; try more [search] starts";
+  }
+  return "";
+}
+
 /// A row for each node; controls, costates and phase are those of the arrow that begins there, and none at the last.
 std::string trajectory_csv(const ControlResult& found) {
   std::string out = "time";
@@ -221,7 +234,7 @@ std::string control_text(const ControlResult& found) {
   const ControlReport& r = found.report;
   std::string out = fmt::format("{} on {}, {} stages: {}{}\n", found.problem, found.groupoid, found.control_rows.size(),
                                 to_string(r.status), found.by_ipopt ? ", by IPOPT" : "");
-  out += fmt::format("  cost             {:.12g}{}\n", r.cost, r.is_strict_minimum ? ", a strict local minimum" : "");
+  out += fmt::format("  cost             {:.12g}{}\n", r.cost, in_words(r.curvature));
   out += fmt::format("  duration         {:.12g}\n", found.times.back());
   for (const PhaseResult& each : found.phases)
     out += fmt::format("    {:<15}{:.12g} in {} stages\n", each.name, each.duration, each.stages);
@@ -263,7 +276,8 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
       out["phases"].push_back({{"name", each.name}, {"stages", each.stages}, {"duration", each.duration}});
   }
   if (!found.loop) {  // of which these are not one plan's
-    out["strict_minimum"] = r.is_strict_minimum;
+    out["strict_minimum"] = r.is_strict_minimum();
+    out["saddle"] = r.is_saddle();
     out["stationarity"] = r.stationarity;
     out["violation"] = r.violation;
     out["complementarity"] = r.complementarity;

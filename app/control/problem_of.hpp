@@ -218,14 +218,24 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       if (!went_to_nothing(phase, found.phases[i])) continue;
       const Section table = table_of_duration(scene, posed, i);
       if (has_unbounded_control(phase, posed.task.boundary))
-        table.fail("free",
-                   "a control without a bound or a cost makes the duration as short as one likes: give bounds, or "
-                   "leave out free");
+        table.fail(
+            "free",
+            "a control that costs nothing and has not both bounds makes the duration as short as one likes: give "
+            "them, or leave out free");
       if (comes_back(posed))
         table.fail("free",
                    "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] "
                    "a range or a state on the way");
     }
+  }
+  /// What a solve that failed says of a free duration that was guessed much too long.
+  static std::string guess_that_went_to_nothing(const Posed& posed, const ControlTrajectory<Sys>& found) {
+    const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
+    for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i)
+      if (went_to_nothing(phases[i], found.phases[i]))
+        return fmt::format("; a free duration went to nothing from the guess of {}: guess it nearer to what it may be",
+                           phases[i].duration);
+    return "";
   }
   template <class Bounded> static void set_bounds(Bounded& of, const ControlBounds& bounds) {
     for (int i = 0; i < int(bounds.size()); ++i) std::tie(of.lower(i), of.upper(i)) = bounds[std::size_t(i)];
@@ -390,6 +400,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.controls = controls();
     out.by_ipopt = posed.scene.method == ControlMethod::ipopt;
     out.report = best.report;
+    if (!best.report.converged()) out.report.message += guess_that_went_to_nothing(posed, best.trajectory);
     out.crossover = best.crossover;
     out.outcomes = found.outcomes;
     out.iterations = found.iterations;

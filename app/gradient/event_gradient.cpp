@@ -341,6 +341,10 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
     out.failure = whole.message;
     return out;
   }
+  if (whole.is_stopped) {
+    out.steps = whole.steps + 1;  // the last one in part
+    out.notes.push_back(fmt::format("an event stops the run at t = {:.6g}", whole.time));
+  }
   std::vector<Row> rows;
   for (const std::string& word : of)
     for (Row& row : Rows(subject, whole).of(word))

@@ -74,6 +74,10 @@ template <class Use>
 int with_subject(const SceneOptions& options, const Section& scene, const std::vector<AskGradient>& subjects,
                  const Use& use) {
   require_family(scene);
+  if (scene.has(keys::control))
+    scene.fail(keys::control,
+               "there are no derivatives of what lagroid control finds; its costates (lagroid control "
+               "--out) say how the cost changes with the states");
   for (const AskGradient ask : subjects) {
     try {
       const auto subject = ask(scene);

@@ -123,8 +123,11 @@ void bind_control(py::module_& module) {
           },
           "The durations of the phases by their names, in order; empty where the scene has none.")
       .def_property_readonly(
-          "is_strict_minimum", [](const R& r) { return r.report.is_strict_minimum; },
+          "is_strict_minimum", [](const R& r) { return r.report.is_strict_minimum(); },
           "Whether second derivatives say so.")
+      .def_property_readonly(
+          "is_saddle", [](const R& r) { return r.report.is_saddle(); },
+          "Whether second derivatives say that the cost falls along some direction, and nothing below was found.")
       .def_property_readonly(
           "iterations", [](const R& r) { return r.iterations; }, "Of all starts.")
       .def_property_readonly(

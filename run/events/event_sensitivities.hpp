@@ -377,6 +377,9 @@ template <DiscreteSystem Sys> class EventPropagation {
       if (k.values.size() != n)
         throw std::invalid_argument(named(found) + ": its kick has " + std::to_string(k.values.size()) +
                                     " numbers, the momentum has " + std::to_string(n));
+      if (!k.values.allFinite())
+        return fail(SolveStatus::left_domain,
+                    "the kick of " + named(found) + " is no finite number at t = " + std::to_string(inside.time));
       const AlgebroidVector<G> by = k.values;
       changed.end.middleRows(n, n) += k.derivatives;
       from.state.momentum += by;

@@ -202,6 +202,8 @@ Eigen::VectorXd MotionThroughEvents::kick_of(const Piece& piece) const {
       throw std::invalid_argument(fmt::format("event \"{}\": its kick has {} numbers, the momentum has {}",
                                               events_[i].name, by.size(), out.size()));
     for (Eigen::Index k = 0; k < out.size(); ++k) out(k) += by(k).value;
+    if (!out.allFinite())
+      throw std::domain_error(fmt::format("the kick of event \"{}\" is no finite number", events_[i].name));
   }
   return out;
 }

@@ -19,6 +19,7 @@
 /// restoration is a primal-dual iteration on the smoothed sum of violations. What rounding leaves of a constraint or of
 /// the gradient (KktRounding) is no violation and no residual, whatever the units.
 
+#include <lagroid/solvers/control/optimality/curvature.hpp>
 #include <lagroid/solvers/control/optimality/kkt_residual.hpp>
 #include <lagroid/solvers/control/optimality/repeated_constraints.hpp>
 #include <lagroid/solvers/control/stage_kkt.hpp>
@@ -91,12 +92,14 @@ struct ControlReport {
   double stationarity = 0;                   ///< largest component of the Lagrangian's gradient
   double violation = 0;                      ///< largest of |phi| and of gamma's positive part
   double complementarity = 0;                ///< largest |z_i gamma_i|
-  bool is_strict_minimum = false;            ///< a local one, by the inertia of its matrix (strict_minimum.hpp)
+  Curvature curvature = Curvature::open;     ///< of what converged
   std::vector<ConstraintViolation> worst;    ///< of a trajectory that is infeasible, the largest five
   std::vector<RepeatedConstraint> repeated;  ///< converged or not: what could be left out (repeated_constraints.hpp)
   std::string message;                       ///< where it is not converged: what to do
 
   bool converged() const { return status == ControlStatus::converged; }
+  bool is_strict_minimum() const { return curvature == Curvature::strict_minimum; }
+  bool is_saddle() const { return curvature == Curvature::saddle; }
   /// Whether a trajectory that did not converge satisfies its constraints so well that it may be followed.
   bool is_usable(double most_violated) const {
     return status != ControlStatus::not_finite && violation <= most_violated;
@@ -108,6 +111,9 @@ class InteriorPoint {
   explicit InteriorPoint(Transcription& transcription, ControlOptions options = {});
 
   ControlReport solve();
+  /// After a solve that ended at a saddle: on to what costs less. Where that does not converge, the trajectory is at
+  /// its last iterate, no longer at the saddle. Iterations count on.
+  ControlReport leave_saddle();
   /// The same from a trajectory that is near one that was solved, with the multipliers as they are: for the next sample
   /// of a control loop. At most so many iterations; a report without words, for it allocates nothing.
   ControlReport resume(int most_iterations);
@@ -155,6 +161,9 @@ class InteriorPoint {
   bool restore();
   void least_squares_costates();
   void update_barrier();
+  double least_curvature();
+  bool fall();
+  void judge();
   void describe();
   void explain();
 

@@ -106,11 +106,11 @@ template <class Sys> class ExtrapolatedPoissonSteps final : public PoissonIntegr
     return {.bracket = KeptStructure::to_the_tolerance, .casimirs = 0, .energy = true};
   }
   Eigen::MatrixXd slope(const std::vector<std::string>& parameters) const override {
-    const std::vector<typename HeldSteps<Sys>::Inner> inner = next_inner_steps();
+    const std::vector<typename HeldPoissonSteps<Sys>::Inner> inner = next_inner_steps();
     return slope_by_parameters(
-        *system_, parameters, [&](const Sys& system) { return HeldSteps<Sys>(system, motion_.point(), inner); },
-        [](const HeldSteps<Sys>& held) { return held.end(); },
-        [](const HeldSteps<Sys>& held, const auto& members) { return held.slope(members); }, checked_);
+        *system_, parameters, [&](const Sys& system) { return HeldPoissonSteps<Sys>(system, motion_.point(), inner); },
+        [](const HeldPoissonSteps<Sys>& held) { return held.end(); },
+        [](const HeldPoissonSteps<Sys>& held, const auto& members) { return held.slope(members); }, checked_);
   }
   /// None is measured: it is what the tolerance lets it be.
   double poisson_defect() const override { return std::numeric_limits<double>::quiet_NaN(); }
@@ -122,8 +122,8 @@ template <class Sys> class ExtrapolatedPoissonSteps final : public PoissonIntegr
 
   /// The inner steps of the next step; none where it does not converge. Another motion makes them,
   /// so that a run keeps no record.
-  std::vector<typename HeldSteps<Sys>::Inner> next_inner_steps() const {
-    std::vector<typename HeldSteps<Sys>::Inner> made;
+  std::vector<typename HeldPoissonSteps<Sys>::Inner> next_inner_steps() const {
+    std::vector<typename HeldPoissonSteps<Sys>::Inner> made;
     // k rows evaluate the field k (k + 1) times.
     Motion next = begun(motion_.point(), motion_.time(), [&](double h, int evaluations) {
       made.push_back({h, int(std::sqrt(evaluations))});

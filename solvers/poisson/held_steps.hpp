@@ -8,7 +8,7 @@
 /// with the levels C(x_0) of the point x_0 that all of them begin from. How inner steps change with the start is not
 /// smooth, and what it does to the end is of the size of the run's own error.
 ///
-///     const HeldSteps<LotkaVolterra> held(LotkaVolterra{}, {2, 0.5}, {{0.1, 6}, {0.15, 7}});
+///     const HeldPoissonSteps<LotkaVolterra> held(LotkaVolterra{}, {2, 0.5}, {{0.1, 6}, {0.15, 7}});
 ///     const auto slope = held.slope();  // d of held.end(), by the start
 ///
 /// Rows are made over numbers with derivatives; the way back to the levels has a derivative of its own
@@ -61,7 +61,7 @@ template <class Sys> struct PoissonField {
 
 }  // namespace detail
 
-template <class Sys> class HeldSteps {
+template <class Sys> class HeldPoissonSteps {
  public:
   static constexpr int n = Sys::dimension;
   using X = Vector<double, n>;
@@ -71,7 +71,7 @@ template <class Sys> class HeldSteps {
     int rows;  ///< of the table that was extrapolated
   };
 
-  HeldSteps(const Sys& system, const X& start, std::vector<Inner> inner)
+  HeldPoissonSteps(const Sys& system, const X& start, std::vector<Inner> inner)
       : system_(system), start_(start), inner_(std::move(inner)) {}
 
   const Sys& system() const { return system_; }

@@ -147,7 +147,7 @@ template <class Sys, class Visit> void each_poisson_step(const Visit& visit) {
   visit(m::midpoint, midpoint);
   if constexpr (casimir_count<Sys>() > 0)
     visit(m::projected, [=](const Sys& s) { return ProjectedStep<FormulaStep<TreeFormula<Sys, 1>>>(midpoint(s)); });
-  visit(m::runge_kutta, [](const Sys& s) { return RungeKuttaStep<Sys>(s); });
+  visit(m::runge_kutta, [](const Sys& s) { return PoissonRungeKuttaStep<Sys>(s); });
 }
 
 }  // namespace detail

@@ -258,12 +258,12 @@ template <class Chart> class SplitStep {
 };
 
 /// The classical method of order 4, to compare with.
-template <class Sys> class RungeKuttaStep {
+template <class Sys> class PoissonRungeKuttaStep {
  public:
   static constexpr int size = Sys::dimension;
   using X = Vector<double, size>;
 
-  explicit RungeKuttaStep(Sys of = {}) : system_(std::move(of)) {}
+  explicit PoissonRungeKuttaStep(Sys of = {}) : system_(std::move(of)) {}
   static constexpr KeptStructure kept{5, 5};
   static constexpr int order = 4;
   static constexpr bool symmetric = false;

@@ -65,11 +65,12 @@ def types_of(text):
 
 
 def types_of_one_name(top):
-    """Names of more than one type, which a program that links both would mix up, with the files that define them."""
+    """Names of more than one type, which a program that links both would mix up, with the files that define them. One in
+    `detail` hides one outside."""
     files = {}
     for path in sorted(path for layer in architecture.layers for path in (top / layer).rglob("*.[ch]pp")):
         for name in types_of(path.read_text()):
-            files.setdefault(name, set()).add(str(path.relative_to(top)))
+            files.setdefault(name.replace("::detail", ""), set()).add(str(path.relative_to(top)))
     return {name: where for name, where in files.items() if len(where) > 1}
 
 
@@ -155,6 +156,11 @@ class BrokenArchitecture(unittest.TestCase):
             (self.top / file).write_text("namespace lagroid {\n\nstruct Number {\n};\n\n}  // namespace lagroid\n")
         (self.top / "run/c.cpp").write_text("namespace lagroid {\nnamespace {\nstruct Number {\n};\n}  // namespace\n}\n")
         self.assertEqual(types_of_one_name(self.top), {"lagroid::Number": {"core/a.hpp", "run/b.cpp"}})
+
+    def test_a_type_that_hides_another(self):
+        (self.top / "core/a.hpp").write_text("namespace lagroid {\ntemplate <class S> class Step {\n};\n}  // namespace\n")
+        (self.top / "run/b.hpp").write_text("namespace lagroid {\nnamespace detail {\nstruct Step {\n};\n}  // namespace\n}\n")
+        self.assertEqual(types_of_one_name(self.top), {"lagroid::Step": {"core/a.hpp", "run/b.hpp"}})
 
     def test_an_edge_that_is_not_drawn(self):
         drawn = architecture.picture.read_text().replace("<title>run&#45;&gt;core</title>", "")

@@ -67,15 +67,19 @@ template <class Sys> bool can_wait(const ControlPhase<Sys>& phase, const NodeOf<
   return true;
 }
 
-/// Whether a control has no bound, and costs nothing along an arrow: with it motions may be as fast as they like.
+/// Whether a control has no bound on one side, and costs nothing along an arrow: with it motions may be as fast as they
+/// like.
 template <class Sys>
 bool has_unbounded_control(const ControlPhase<Sys>& phase, const ArrowOf<typename Sys::GroupoidType>& along) {
   using Controls = Vector<double, Sys::controls>;
   const double h = phase.duration / double(phase.stages);
   const double of_none = phase.system.cost(along, Controls(Controls::Zero()), h);
+  const auto is_free_of_cost = [&](int i, double u) {
+    return phase.system.cost(along, Controls(u * Controls::Unit(i)), h) == of_none;
+  };
   for (int i = 0; i < Sys::controls; ++i)
-    if (!std::isfinite(phase.lower(i)) && !std::isfinite(phase.upper(i)) &&
-        phase.system.cost(along, Controls(Controls::Unit(i)), h) == of_none)
+    if ((!std::isfinite(phase.upper(i)) && is_free_of_cost(i, 1)) ||
+        (!std::isfinite(phase.lower(i)) && is_free_of_cost(i, -1)))
       return true;
   return false;
 }

@@ -119,8 +119,9 @@ Eigen::MatrixXd free_unknowns(const std::vector<Guessed>& unknowns, Fit& fit) {
 /// Weighted residuals, as the loss takes them, and their derivatives.
 struct LeftOver {
   Eigen::MatrixXd derivatives;
-  double squares = 0;  ///< the sum of psi^2
-  long within = 0;     ///< how many are not cut off
+  double squares = 0;   ///< the sum of psi^2
+  double rounding = 0;  ///< what is less is no change of the data: epsilon times the norm of them and of the run's
+  long within = 0;      ///< how many are not cut off
 
   /// s, of so many unknowns that are told; nothing is left over of as many numbers.
   double scale(Eigen::Index told) const {
@@ -145,6 +146,8 @@ LeftOver left_over(const PredictedRuns& runs, Eigen::Index unknowns, double hube
       const bool is_within = huber == 0 || std::abs(residual) <= huber;
       out.squares += is_within ? residual * residual : huber * huber;
       out.within += is_within ? 1 : 0;
+      const double size = std::max(std::abs(each.value), std::abs(runs.predicted(index)));
+      out.rounding = std::hypot(out.rounding, std::numeric_limits<double>::epsilon() * size / each.sigma);
       out.derivatives.row(Eigen::Index(index)) = runs.derivatives(index) / each.sigma;
       ++index;
     }
@@ -184,13 +187,13 @@ void describe_unknowns(const PredictedRuns& runs, const GradientSubject& subject
   const Eigen::MatrixXd free = free_unknowns(unknowns, fit);
   const LeftOver left = left_over(runs, Eigen::Index(unknowns.size()), options.huber);
   Eigen::MatrixXd weighted = left.derivatives * free;
-  // What changes by an unknown's own size, and is rounding beside the others, is nothing.
+  // What changes by an unknown's own size, and is rounding beside the others or beside the data, is nothing.
   Eigen::VectorXd size = weighted.colwise().norm();
   Eigen::VectorXd effect(free.rows());
   for (Eigen::Index j = 0; j < free.rows(); ++j) effect(j) = unknowns[std::size_t(j)].size;
   effect = (free.transpose() * effect).cwiseProduct(size).eval();
   for (Eigen::Index j = 0; j < size.size(); ++j) {
-    if (effect(j) > 1e-12 * effect.maxCoeff()) continue;
+    if (effect(j) > std::max(1e-12 * effect.maxCoeff(), left.rounding)) continue;
     weighted.col(j).setZero();
     size(j) = 1;
   }

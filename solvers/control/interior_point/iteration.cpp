@@ -1,5 +1,4 @@
 #include <lagroid/solvers/control/interior_point.hpp>
-#include <lagroid/solvers/control/optimality/strict_minimum.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -297,10 +296,7 @@ void InteriorPoint::iterate(int most_iterations) {
 ControlReport InteriorPoint::solve() {
   begin();
   iterate(options_.max_iterations);
-  if (report_.converged())
-    report_.is_strict_minimum = is_strict_minimum(kkt_, derivatives_, multipliers_, slacks_, sigma_, dual_);
-  describe();
-  explain();
+  judge();
   return report_;
 }
 

@@ -17,12 +17,19 @@ void InteriorPoint::describe() {
   for (long k = 0; k < sizes_.stages; ++k) report_.cost += values_.cost[k][0];
 }
 
+void InteriorPoint::judge() {
+  report_.curvature =
+      report_.converged() ? curvature_of(kkt_, derivatives_, multipliers_, slacks_, sigma_, dual_) : Curvature::open;
+  describe();
+  explain();
+}
+
 void InteriorPoint::explain() { explain_end(transcription_, values_, derivatives_, options_, report_); }
 
 void explain_end(const Transcription& transcription, const StageValues& values, const StageDerivatives& derivatives,
                  const ControlOptions& options, ControlReport& report) {
   // Rows that repeat each other leave the matrix without the inertia of a strict minimum: else nobody need ask.
-  if (!report.is_strict_minimum && report.status != ControlStatus::not_finite &&
+  if (report.curvature == Curvature::open && report.status != ControlStatus::not_finite &&
       report.status != ControlStatus::interrupted)
     report.repeated = repeated_constraints(transcription, values, derivatives, options.tolerance);
   if (report.converged()) return;

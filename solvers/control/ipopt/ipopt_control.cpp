@@ -1,7 +1,6 @@
 #include <lagroid/solvers/control/interior_point/failure.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_program.hpp>
-#include <lagroid/solvers/control/optimality/strict_minimum.hpp>
 
 #include <fmt/format.h>
 #include <IpIpoptApplication.hpp>
@@ -46,7 +45,7 @@ std::string message_of(const ControlReport& report, Ipopt::ApplicationReturnStat
 }
 
 /// Of slacks as they stand, those of an interior point or smaller.
-bool is_strict_minimum(const Transcription& transcription, const StageValues& values,
+Curvature curvature_of(const Transcription& transcription, const StageValues& values,
                        const StageDerivatives& derivatives, const StageRows& multipliers) {
   const TranscriptionSizes& sizes = transcription.sizes();
   constexpr double least_slack = 1e-14;
@@ -55,7 +54,7 @@ bool is_strict_minimum(const Transcription& transcription, const StageValues& va
   StageKkt kkt(transcription);
   StageRows sigma(sizes.stages, sizes.inequality);
   StageRows dual(sizes.stages, sizes.equality);
-  return lagroid::is_strict_minimum(kkt, derivatives, multipliers, slacks, sigma, dual);
+  return lagroid::curvature_of(kkt, derivatives, multipliers, slacks, sigma, dual);
 }
 
 }  // namespace
@@ -101,8 +100,8 @@ IpoptSolution solve_by_ipopt(TrajectoryChart& chart, const ControlOptions& optio
   report.stationarity = left.stationarity;
   report.violation = left.violation;
   report.complementarity = left.complementarity;
-  report.is_strict_minimum =
-      report.converged() && is_strict_minimum(transcription, values, derivatives, out.inequality_multipliers);
+  if (report.converged())
+    report.curvature = curvature_of(transcription, values, derivatives, out.inequality_multipliers);
   explain_end(transcription, values, derivatives, options, report);
   report.message = message_of(report, ended);
   return out;

@@ -45,7 +45,10 @@ TEST_F(FreeTime, ATimeThatGoesToNothingIsRefused) {
   const std::string scene =
       "control = 'double_integrator'\n[parameters]\ncost = 'time'\n[boundary]\nstart = [0, 1]\nend = [0, 0]\n"
       "[horizon]\nduration = 3\nfree = true\nstages = 20\n";
-  expect_refused("control " + write(scene).string(), "horizon.free: a control without a bound or a cost");
+  expect_refused("control " + write(scene).string(),
+                 "horizon.free: a control that costs nothing and has not both bounds");
+  expect_refused("control " + write(scene + "[bounds]\nu = { max = 1 }\n").string(),
+                 "horizon.free: a control that costs nothing and has not both bounds");
   const std::string bounded = "control " + write(scene + "[bounds]\nu = [-1, 1]\n").string();
   expect_refused(bounded + " --set 'boundary.start=[0,0]'", "horizon.free: the end is the start");
   // Where the motion itself takes its time, controls may be as large as they like.
@@ -64,6 +67,21 @@ TEST_F(FreeTime, TooShortAGuessOfTheDurationIsMadeLonger) {
                                                             x, v));
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_NEAR(nlohmann::json::parse(r.out).at("cost").get<double>(), fastest, 1e-3);
+}
+
+TEST_F(FreeTime, MuchTooLongAGuessOfTheDurationIsNamed) {
+  const Outcome r = run(scene("fastest_stop") + " --set horizon.duration=1e6");
+  EXPECT_EQ(r.code, 3);
+  EXPECT_NE(r.err.find("went to nothing from the guess of 1000000: guess it nearer"), std::string::npos) << r.err;
+}
+
+// In place no speed costs most, and by symmetry nothing leads from it.
+TEST_F(FreeTime, ACarThatTurnsInPlaceIsNoBest) {
+  const Outcome r = run(scene("reeds_shepp") + " --set 'boundary.end=[0,0,1]' --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto found = nlohmann::json::parse(r.out);
+  EXPECT_LT(found.at("cost").get<double>(), 1.00001);
+  EXPECT_FALSE(found.at("saddle").get<bool>());
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ TEST(ControlPhases, TheCostateJumpsAlongTheNormalOfTheGate) {
   for (const long stages : {40L, 80L}) {
     const auto found = solve_control(through_a_gate(stages), 0);
     ASSERT_TRUE(found.report.converged()) << found.report.message;
-    EXPECT_TRUE(found.report.is_strict_minimum);
+    EXPECT_TRUE(found.report.is_strict_minimum());
     errors[grid++] = found.report.cost - 25.5;
     const auto at = std::size_t(stages);
     EXPECT_NEAR(found.trajectory.arrows[at - 1].target(0), 1, 1e-12);

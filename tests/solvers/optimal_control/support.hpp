@@ -32,7 +32,7 @@ void expect_second_order(const std::string& name, const ControlTask<Sys>& task, 
     EXPECT_TRUE(crossover.crossed()) << name << " N = " << stages << ": " << to_string(crossover.status);
     EXPECT_LE(crossover.after.largest(), 1e-12) << name << " N = " << stages;
     EXPECT_LE(crossover.before.largest(), 1e-9) << name << " N = " << stages;
-    EXPECT_TRUE(report.is_strict_minimum) << name;
+    EXPECT_TRUE(report.is_strict_minimum()) << name;
   }
   if (!smooth) return;
   EXPECT_NEAR((4 * costs[2] - costs[1]) / 3, reference, 2e-6 * std::abs(reference)) << name;

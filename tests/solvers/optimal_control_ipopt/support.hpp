@@ -38,7 +38,7 @@ template <class Sys> void expect_agreement(const std::string& name, const Contro
     EXPECT_LE(theirs.report.stationarity, 1e-7) << name << i;
     EXPECT_LE(theirs.report.violation, 1e-9) << name << i;
     EXPECT_LE(theirs.report.complementarity, 1e-7) << name << i;
-    EXPECT_EQ(theirs.report.is_strict_minimum, ours.report.is_strict_minimum) << name << i;
+    EXPECT_EQ(theirs.report.is_strict_minimum(), ours.report.is_strict_minimum()) << name << i;
     const double size = std::max(1.0, std::abs(ours.report.cost));
     if (std::abs(ours.report.cost - theirs.report.cost) > 1e-8 * size) continue;
     ++agreed;

@@ -40,7 +40,7 @@ void expect_agreement(const std::string& name, const SceneControl& task, const s
     EXPECT_LE(theirs.report.stationarity, 1e-7) << name << start;
     EXPECT_LE(theirs.report.violation, 1e-9) << name << start;
     EXPECT_LE(theirs.report.complementarity, 1e-7) << name << start;
-    EXPECT_TRUE(theirs.report.is_strict_minimum) << name << start;
+    EXPECT_TRUE(theirs.report.is_strict_minimum()) << name << start;
     if (std::abs(theirs.report.cost - ours.report.cost) > 1e-8 * ours.report.cost) continue;
     ++agreed;
     EXPECT_LE(distance(scene, ours.path, theirs.path), 1e-6) << name << start;

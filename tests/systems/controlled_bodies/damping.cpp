@@ -184,7 +184,7 @@ TEST(DampedBodies, ACatTurnsWithNothingToPushAgainstButDrag) {
     ControlledScene scene(task);
     const SceneSolution found = solve_scene(scene, scene_guess(scene, 4));
     ASSERT_TRUE(found.report.converged()) << found.report.message;
-    EXPECT_TRUE(found.report.is_strict_minimum);
+    EXPECT_TRUE(found.report.is_strict_minimum());
     const auto kept = [&](const ControlledNode& node) {
       return Vec(node.momenta.segment<3>(0) + node.momenta.segment<3>(3) + cat.drag_of_front * node.places[0] +
                  cat.drag_of_rear * node.places[1]);

@@ -40,7 +40,7 @@ void expect_cost(SceneControl task, double reference) {
     ASSERT_TRUE(best.report.converged()) << stages << ": " << best.report.message;
     EXPECT_LE(best.report.violation, 1e-10);
     EXPECT_LE(best.report.stationarity, 1e-10);
-    EXPECT_TRUE(best.report.is_strict_minimum);
+    EXPECT_TRUE(best.report.is_strict_minimum());
     costs[at++] = best.report.cost;
   }
   EXPECT_NEAR((4 * costs[2] - costs[1]) / 3, reference, 1e-5 * reference);

@@ -191,12 +191,12 @@ constexpr double coarse = 1e-3;  ///< by which inner steps leave errors that the
 constexpr int nodes = 5;         ///< of the runs above
 
 /// A run by the inner steps of another, node after node, whatever it begins from.
-template <class Sys> struct ByHeldSteps {
+template <class Sys> struct ByHeldPoissonSteps {
   using X = Vector<double, Sys::dimension>;
-  std::vector<std::vector<typename HeldSteps<Sys>::Inner>> inner;
+  std::vector<std::vector<typename HeldPoissonSteps<Sys>::Inner>> inner;
   std::vector<X> points;  ///< of the run that they are of
 
-  ByHeldSteps(const X& start, const PoissonOptions& options) {
+  ByHeldPoissonSteps(const X& start, const PoissonOptions& options) {
     detail::ExtrapolatedPoissonSteps<Sys> run(Sys(), start, options);
     std::size_t made = 0;
     for (int k = 0; k < nodes; ++k) {
@@ -210,9 +210,9 @@ template <class Sys> struct ByHeldSteps {
   }
   /// Of another system, where its numbers are those of Sys.
   template <class Other = Sys> auto at_node(const Other& system, const X& x, int k) const {
-    std::vector<typename HeldSteps<Other>::Inner> steps;
+    std::vector<typename HeldPoissonSteps<Other>::Inner> steps;
     for (const auto& each : inner[std::size_t(k)]) steps.push_back({each.size, each.rows});
-    return HeldSteps<Other>(system, x, steps);
+    return HeldPoissonSteps<Other>(system, x, steps);
   }
   /// The end of a run that differs in number j by so much, those of the start first.
   Eigen::VectorXd end_of(X x, int j, double by) const {
@@ -241,7 +241,7 @@ void expect_differences_by_held_steps(const Vector<double, Sys::dimension>& star
     const PoissonOptions options = extrapolation(step, tolerance);
     const Propagated run = propagated<Sys>(start, options);
     ASSERT_TRUE(run.converged()) << run.message;
-    EXPECT_LT(ByHeldSteps<Sys>(start, options).missed(run.derivatives), bound);
+    EXPECT_LT(ByHeldPoissonSteps<Sys>(start, options).missed(run.derivatives), bound);
   }
 }
 const Vector<double, 6> top = (Vector<double, 6>() << 0.3, 0.4, 1.2, 0, 0.6, 0.8).finished();
@@ -264,7 +264,7 @@ template <class Sys> struct Adrift : PoissonSystem<Adrift<Sys>, Sys::dimension> 
 };
 template <class Sys>
 double missed_without_projection(const Vector<double, Sys::dimension>& start, const PoissonOptions& options) {
-  const ByHeldSteps<Sys> held(start, options);
+  const ByHeldPoissonSteps<Sys> held(start, options);
   Eigen::MatrixXd product = Eigen::MatrixXd::Identity(Sys::dimension, Sys::dimension);
   for (int k = 0; k < nodes; ++k)
     product = (held.at_node(Adrift<Sys>(), held.points[std::size_t(k)], k).slope() * product).eval();
