@@ -54,6 +54,18 @@ class Checks(unittest.TestCase):
         for name, derivative in zip(found["by"], found["derivatives"][0]):
             self.assertIn(["by", name, f"{derivative:.10g}"], lines)
 
+    def test_a_kick_that_is_no_number_is_named(self):
+        infinite = 'event=[{name = "low", when = "q", kick = ["1/0"]}]'
+        for method in ("splitting", "runge-kutta", "variational"):
+            done = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", f"time.method={method}", "--set", infinite)
+            self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (3, "", 1), done.stderr)
+            self.assertRegex(done.stderr, "the kick of event .low.*is no finite number")
+
+    def test_control_has_no_gradient_here(self):
+        done = run(of_part("pendulum"), "gradient", examples / "control" / "swing_up.toml")
+        self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1), done.stderr)
+        self.assertIn("control: there are no derivatives of what lagroid control finds", done.stderr)
+
     def test_columns_without_a_value_are_told(self):
         words = ("gradient", examples / "pendulum.toml", "--set", "time.steps=10", "--of", "final.w", "--column", "w=log(q-9)")
         done = run(of_part("pendulum"), *words)

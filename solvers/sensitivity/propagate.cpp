@@ -262,7 +262,13 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   };
   if (!out.converged()) return out;
   observe(0);
-  for (long k = 0; k < steps && advance_linearised(motion, out); ++k) {
+  for (long k = 0; k < steps; ++k) {
+    if (directions.cols() == 0) {
+      if (!advance(motion, 1, out)) break;
+      observe(k + 1);
+      continue;
+    }
+    if (!advance_linearised(motion, out)) break;
     for (int stage = 0; stage < motion.stages(); ++stage) out.end = motion.stage(stage).forward(out.end);
     growth.after_a_step(of_start(out.end));
     if (growth.wants_matrix()) {

@@ -60,7 +60,7 @@ struct Propagated {
   double digits_left() const;
 };
 
-/// The directions start as columns of (v, mu, theta).
+/// The directions start as columns of (v, mu, theta); without any, values are observed and no step is linearised.
 Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::MatrixXd& directions,
                              const Observed& observed = Observed::at_end());
 Propagated propagate_backward(LinearisedMotion& motion, long steps, const Observed& observed = Observed::at_end(),

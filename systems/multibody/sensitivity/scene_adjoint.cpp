@@ -136,6 +136,7 @@ void SceneAdjoint::arrange(double h) {
   const std::vector<int> colours = coloured(columns_, order, coordinates + int(rows_.size()));
   const int most = colours.empty() ? 0 : *std::max_element(colours.begin(), colours.end());
   evaluations_.clear();
+  pushed_.at.clear();
   for (int which = 0; which <= direction_of(most).evaluation; ++which) {
     std::vector<VariedNumber> numbers;
     std::vector<Entry> of_impulses, of_rows;
@@ -195,7 +196,11 @@ bool SceneAdjoint::take_back(const Step& step, Column gradient) {
   Column by_numbers = gradient.tail(Eigen::Index(numbers_.size()));
 
   for (std::size_t f = 0; f < factors; ++f) momentum_[f] = momentum(f);
-  if (!give_back(step.after, nullptr, momentum_, left_, by_numbers)) return false;
+  Balance pushed, reacted;
+  if (!pushed_.stands(step.after, momentum_)) push_back(step.after, momentum_, &pushed);
+  if (!pushed.holds()) return false;
+  left_ = pushed_.back;
+  by_numbers += pushed_.by_numbers;
   std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
   for (std::size_t f = 0; f < factors; ++f) {
     left_[f] += place(f);
@@ -219,7 +224,9 @@ bool SceneAdjoint::take_back(const Step& step, Column gradient) {
   }
   const double *const moved = coordinates_of(moved_), *const velocity = coordinates_of(velocity_);
   for (const InertiaEntry& e : inertia_) by_numbers(e.number) -= e.change * velocity[e.at] * moved[e.at];
-  if (!give_back(step.before, &step.after.guess.multipliers[0], along_, back_, by_numbers)) return false;
+  push_back(step.before, along_, nullptr);
+  react_back(step.after.guess.multipliers[0], along_, back_, by_numbers, reacted);
+  if (!reacted.holds()) return false;
   for (std::size_t f = 0; f < factors; ++f) {
     place(f) = left_[f] + back_[f];
     momentum(f) = along_[f];
@@ -227,33 +234,42 @@ bool SceneAdjoint::take_back(const Step& step, Column gradient) {
   return true;
 }
 
-bool SceneAdjoint::give_back(const SceneState& node, const std::vector<double>* multipliers, const std::vector<Vec>& s,
-                             std::vector<Vec>& back, Column by_numbers) {
-  Balance balance;
+void SceneAdjoint::give_back(const Evaluation& each, const std::vector<VariedVec>& given, const std::vector<Vec>& s,
+                             std::vector<Vec>& back, Column by_numbers, Balance* balance) const {
+  if (&each == &evaluations_.front())
+    for (std::size_t f = 0; f < s.size(); ++f) {
+      back[f] = tangents_of(given[f], 0);
+      if (balance == nullptr) continue;
+      balance->add(s[f], tangents_of(given[f], everything));
+      balance->take(place_amounts_[f], back[f]);
+    }
+  const double* const along = coordinates_of(s);
+  const VariedNumber* const changes = coordinates_of(given);
+  for (const Entry& e : each.of_impulses) {
+    const double change = along[e.at] * changes[e.at].tangent(e.direction);
+    by_numbers(e.number) += change;
+    if (balance != nullptr) balance->take(amounts_[std::size_t(e.number)] * change);
+  }
+}
+
+void SceneAdjoint::push_back(const SceneState& node, const std::vector<Vec>& s, Balance* balance) {
+  pushed_.at = node.at.x;
+  pushed_.along = s;
+  pushed_.back.resize(s.size());
+  pushed_.by_numbers.setZero(Eigen::Index(numbers_.size()));
   for (Evaluation& each : evaluations_) {
-    const bool is_first = &each == &evaluations_.front();
-    if (is_first) {
+    if (&each == &evaluations_.front()) {
       each.node.place(node, s, place_amounts_);
     } else {
       each.node.place(node);
     }
-    const std::vector<VariedVec>& given = each.node.push();
-    if (multipliers != nullptr) each.node.react(*multipliers);
-    if (is_first)
-      for (std::size_t f = 0; f < s.size(); ++f) {
-        back[f] = tangents_of(given[f], 0);
-        balance.add(s[f], tangents_of(given[f], everything));
-        balance.take(place_amounts_[f], back[f]);
-      }
-    const double* const along = coordinates_of(s);
-    const VariedNumber* const changes = coordinates_of(given);
-    for (const Entry& e : each.of_impulses) {
-      const double change = along[e.at] * changes[e.at].tangent(e.direction);
-      by_numbers(e.number) += change;
-      balance.take(amounts_[std::size_t(e.number)] * change);
-    }
+    give_back(each, each.node.push(), s, pushed_.back, pushed_.by_numbers, balance);
   }
-  return balance.holds();
+}
+
+void SceneAdjoint::react_back(const std::vector<double>& multipliers, const std::vector<Vec>& s, std::vector<Vec>& back,
+                              Column by_numbers, Balance& balance) {
+  for (Evaluation& each : evaluations_) give_back(each, each.node.react(multipliers), s, back, by_numbers, &balance);
 }
 
 bool SceneAdjoint::take_rows(const Step& step, Column by_numbers) {

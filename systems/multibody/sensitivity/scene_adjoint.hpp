@@ -101,10 +101,15 @@ class SceneAdjoint {
   bool factorise(const Step& step);
   bool take_all_back(const Step& step, const Eigen::MatrixXd& gradients);
   bool take_back(const Step& step, Column gradient);
-  /// (dg/dq)^T s of what a node gives, with multipliers or without, and (dg/dt)^T s; whether both are what everything
-  /// changes along s.
-  bool give_back(const SceneState& node, const std::vector<double>* multipliers, const std::vector<Vec>& s,
-                 std::vector<Vec>& back, Column by_numbers);
+  /// (dg/dq)^T s of what a node gives in an evaluation, and (dg/dt)^T s, which is added; the balance is between both
+  /// and what everything changes along s.
+  void give_back(const Evaluation& each, const std::vector<VariedVec>& given, const std::vector<Vec>& s,
+                 std::vector<Vec>& back, Column by_numbers, Balance* balance) const;
+  /// Goes to a node, and takes back what effects give there, into `pushed_`.
+  void push_back(const SceneState& node, const std::vector<Vec>& s, Balance* balance);
+  /// Takes back what effects and joints give at the node where it went.
+  void react_back(const std::vector<double>& multipliers, const std::vector<Vec>& s, std::vector<Vec>& back,
+                  Column by_numbers, Balance& balance);
   /// Takes (dC'/dt)^T m; whether rows change as their gradients say.
   bool take_rows(const Step& step, Column by_numbers);
 
@@ -123,6 +128,13 @@ class SceneAdjoint {
   std::vector<double> multipliers_;
   std::vector<Balance> rows_;
   Eigen::MatrixXd taken_;
+  /// Where it went last. Steps are taken back one before the other: where the one begins the next one ends.
+  struct Pushed {
+    std::vector<Vec> at, along, back;
+    Eigen::VectorXd by_numbers;
+    bool stands(const SceneState& node, const std::vector<Vec>& s) const { return at == node.at.x && along == s; }
+  };
+  Pushed pushed_;
 };
 
 }  // namespace lagroid::multibody

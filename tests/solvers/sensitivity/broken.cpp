@@ -101,5 +101,42 @@ TEST(SensitivityLaws, BackwardNeedsTheStatesOfTheMotion) {
   EXPECT_GT(laws::detail::relative_defect(wrong.derivatives, forward.derivatives), 1e-3);
 }
 
+/// A motion that has no derivatives.
+class Rough final : public LinearisedMotion {
+ public:
+  explicit Rough(LinearisedMotion& motion) : motion_(motion) {}
+  int states() const override { return motion_.states(); }
+  int parameters() const override { return motion_.parameters(); }
+  double time() const override { return motion_.time(); }
+  StepReport advance() override { return motion_.advance(); }
+  bool linearise() override { return false; }
+  int stages() const override { return motion_.stages(); }
+  const StepDerivative& stage(int k) const override { return motion_.stage(k); }
+  NodeValues observe() const override { return motion_.observe(); }
+  void serialize(NumberArchive& archive) override { motion_.serialize(archive); }
+
+ private:
+  LinearisedMotion& motion_;
+};
+// What differences are made of costs no derivatives.
+TEST(SensitivityLaws, ValuesAloneNeedNoDerivatives) {
+  Kepler kepler;
+  kepler.h = 0.05;
+  const State<Pair<2>> start{{1, 0}, {0, 1.1}};
+  const auto run = [&](Eigen::Index directions, bool is_rough) {
+    LinearisedMotionOf<Kepler> motion(kepler, detail::newton_integrator<Kepler>(kepler, start, {}), {"strength"},
+                                      [](const ObservedNode<Kepler>& node) { return VariedVector(node.momentum); });
+    Rough rough(motion);
+    return propagate_forward(is_rough ? static_cast<LinearisedMotion&>(rough) : motion, 20,
+                             Eigen::MatrixXd::Identity(5, directions), Observed::integral());
+  };
+  const Propagated smooth = run(5, false), values = run(0, true);
+  EXPECT_EQ(run(5, true).status, SolveStatus::singular);
+  ASSERT_TRUE(values.converged());
+  EXPECT_EQ(values.values, smooth.values);
+  EXPECT_EQ(values.derivatives.cols(), 0);
+  EXPECT_EQ(values.steps_solved, smooth.steps_solved);
+}
+
 }  // namespace
 }  // namespace lagroid::sensitivity_broken_tests
