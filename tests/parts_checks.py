@@ -54,6 +54,22 @@ class Checks(unittest.TestCase):
         for name, derivative in zip(found["by"], found["derivatives"][0]):
             self.assertIn(["by", name, f"{derivative:.10g}"], lines)
 
+    def test_empty_words_are_no_words(self):
+        scene = examples / "pendulum.toml"
+        for command, *words in (("gradient", "--covariance", ""), ("gradient", "--of", " "), ("fit", "data.csv", "--residuals", "")):
+            done = run(of_part("pendulum"), command, scene, *words)
+            self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1), done.stderr)
+        with tempfile.TemporaryDirectory() as folder:
+            done = run(of_part("pendulum"), "gradient", scene, "--covariance", folder)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+            self.assertIn("cannot be read", done.stderr)
+        self.assertEqual(told("pendulum", scene, "--set", "time.steps=5", "--of", "final.q, final.p")["of"], ["final.q", "final.p"])
+
+    def test_a_row_without_a_size_has_no_digits(self):
+        found = told("pendulum", examples / "pendulum.toml", "--set", "time.steps=40", "--of", "final.q,final.none", "--column",
+                     "none=0*q", "--check")
+        self.assertLess(found["digits_agreed"], 15)
+
     def test_a_kick_that_is_no_number_is_named(self):
         infinite = 'event=[{name = "low", when = "q", kick = ["1/0"]}]'
         for method in ("splitting", "runge-kutta", "variational"):

@@ -153,6 +153,12 @@ class Fits(unittest.TestCase):
             refused("t,q\n0,1\n", "--combination a: it is given twice", *twice)
             refused("", "no header; the first line names t and columns of the run")
 
+    def test_a_sigma_far_below_the_errors_is_told_under_hubers_loss(self):
+        words = ("fit", examples / "damped_pendulum.toml", examples / "measured_pendulum.csv", "--wrt", "initial,parameters.length",
+                 "--huber", "1.345")
+        self.assertIn("% of the numbers are within --huber sigma", run(of_part("damped_pendulum"), *words, "--sigma", "q=1e-5").stdout)
+        self.assertNotIn("within --huber sigma", run(of_part("damped_pendulum"), *words, "--sigma", "q=0.01").stdout)
+
     def test_data_that_tell_nothing_are_told(self):
         with tempfile.TemporaryDirectory() as folder:
             text = (examples / "measured_pendulum.csv").read_text()

@@ -35,6 +35,19 @@ std::string what_first(const ControlResult& found) {
   return found.report.worst.empty() ? "" : "; most of all " + in_words(found, found.report.worst.front());
 }
 
+/// The keys of what may help where a search found nothing.
+std::string_view keys_of_starts(ControlStatus status) {
+  switch (status) {
+    case ControlStatus::infeasible:
+    case ControlStatus::stagnated:
+      return " (other starts: solver.starts, solver.seed)";
+    case ControlStatus::not_converged:
+      return " (other starts: solver.starts, solver.seed; iterations: solver.iterations)";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
 
 void add_control_options(CLI::App& command, ControlCommandOptions& options) {
@@ -83,8 +96,8 @@ int control(const ControlCommandOptions& options) {
     return exit_interrupted;
   }
   if (found.report.converged()) return code_after_writing(0, options.scene);
-  complain(fmt::format("{}: {}: {}{}", options.scene, to_string(found.report.status), found.report.message,
-                       what_first(found)));
+  complain(fmt::format("{}: {}: {}{}{}", options.scene, to_string(found.report.status), found.report.message,
+                       what_first(found), keys_of_starts(found.report.status)));
   return exit_failed;
 }
 

@@ -21,7 +21,11 @@ inline const KeyOf<Number> duration_key{"duration", {positive}, "s", "T; where i
 inline const KeyOf<Flag> free_key{"free", {}, "", "true: the duration is an unknown", false};
 inline const KeyOf<Whole> stages_key{"stages", {2, 1'000'000}, "", "N, arrows between the ends", 100L};
 inline const KeyOf<Whole> starts_key{
-    "starts", {1, 100'000}, "", "trajectories to start from: straight, drifting, then wound and bent", 10L};
+    "starts",
+    {1, 100'000},
+    "",
+    "trajectories to start from: straight, drifting, then with jumping controls or wound and bent",
+    10L};
 inline const KeyOf<Whole> seed_key{"seed", {0, 4294967295}, "", "of the starts", 1L};
 inline const KeyOf<Number> tolerance_key{
     "tolerance", {a_tolerance}, "", "on every part of the KKT residual", ControlOptions().tolerance};

@@ -109,9 +109,10 @@ int gradient_of_optimum(const GradientOptions& options, const Section& scene, Se
   return minima(scene, {options.scene, options.of, options.by, options.check, options.json});
 }
 
-/// Of words of --of and --wrt, which name something.
+/// Of words that name something, without blanks at their ends.
 CLI::Validator named() {
-  return {[](const std::string& word) {
+  return {[](std::string& word) {
+            CLI::detail::trim(word);
             return std::string(word.empty() ? "an empty name; leave the option out for all that there is" : "");
           },
           ""};
@@ -199,14 +200,14 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
          "of an event or of steps that vary; events: the times of all; of a boundary value cost; of a scene of "
          "optimize minimum and minimiser (default: all at the end, cost, minimum)")
       ->delimiter(',')
-      ->check(named())
+      ->transform(named())
       ->allow_extra_args(false);
   app.add_option(
          "--wrt", options.by,
          "initial.NAME, of a boundary value boundary.start or boundary.end, or parameters.NAME, of a minimum data.NAME "
          "too, separated by commas (default: all)")
       ->delimiter(',')
-      ->check(named())
+      ->transform(named())
       ->allow_extra_args(false);
   add_columns_option(app, options.columns);
   auto* deviations =
@@ -217,7 +218,7 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
   auto* covariance =
       app.add_option("--covariance", options.covariance,
                      "what lagroid fit --json printed, as a file: what the errors of its solution become, from there");
-  covariance->excludes("--wrt")->excludes(deviations);
+  covariance->transform(named())->excludes("--wrt")->excludes(deviations);
   app.add_option("--draws", options.draws.count,
                  "with one of these: compare with so many runs from starts drawn at random")
       ->check(CLI::Range(2L, 10'000'000L));

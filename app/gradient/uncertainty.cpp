@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 namespace lagroid::app {
@@ -145,7 +147,8 @@ InputErrors fitted_errors(const std::string& file) {
   InputErrors out;
   out.are_independent = false;
   std::ifstream in(file);
-  if (!in) throw DataError(fmt::format("{}: cannot be read; write it by lagroid fit --json", file));
+  if (std::error_code none; !in || std::filesystem::is_directory(file, none))
+    throw DataError(fmt::format("{}: cannot be read; write it by lagroid fit --json", file));
   try {
     const nlohmann::json fit = nlohmann::json::parse(in);
     for (const auto& unknown : fit.at("unknowns")) {

@@ -89,8 +89,8 @@ class GradientTable(NamedTuple):
 def gradient(
     scene: SceneLike,
     *,
-    of: Sequence[str] = ("final",),
-    wrt: Sequence[str] = ("initial", "parameters"),
+    of: str | Sequence[str] = ("final",),
+    wrt: str | Sequence[str] = ("initial", "parameters"),
     columns: Optional[Mapping[str, str]] = None,
     set: Optional[Mapping[str, Any]] = None,
     check: bool = False,
@@ -101,7 +101,7 @@ def gradient(
     as {"w1": "M1 / parameters.inertia.0"}. `check` compares with extrapolated differences of runs, and names
     what they contradict. Raises
     ProgramError where the program is missing, SceneError where it refuses, SolveError where a step of the run fails."""
-    arguments = ["--of", ",".join(of), "--wrt", ",".join(wrt), *repeated("--column", columns)]
+    arguments = ["--of", listed(of), "--wrt", listed(wrt), *repeated("--column", columns)]
     arguments += ["--check"] if check else []
     found = told_by("gradient", scene, set, arguments)
     if found.get("status") == "failed":
@@ -139,7 +139,7 @@ def uncertainty(
     deviations: Optional[Mapping[str, float]] = None,
     *,
     fitted: Optional[Mapping[str, Any]] = None,
-    of: Sequence[str] = ("final",),
+    of: str | Sequence[str] = ("final",),
     columns: Optional[Mapping[str, str]] = None,
     set: Optional[Mapping[str, Any]] = None,
     draws: int = 0,
@@ -151,7 +151,7 @@ def uncertainty(
     random (docs/gradients.md). Raises what `gradient` raises, and ValueError unless one of both is given."""
     if (deviations is None) == (fitted is None):
         raise ValueError("give deviations, or what was fitted")
-    arguments = ["--of", ",".join(of), *repeated("--column", columns)]
+    arguments = ["--of", listed(of), *repeated("--column", columns)]
     drawn_at_random = ["--draws", str(draws), "--seed", str(seed)] if draws else []
     with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
         if deviations is not None:
@@ -179,9 +179,9 @@ def uncertainty(
 def fit(
     scene: SceneLike,
     data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
-    wrt: Sequence[str],
+    wrt: str | Sequence[str],
     *,
-    of: Sequence[str] = (),
+    of: str | Sequence[str] = (),
     columns: Optional[Mapping[str, str]] = None,
     combinations: Optional[Mapping[str, str]] = None,
     sigma: Optional[Mapping[str, float]] = None,
@@ -202,9 +202,9 @@ def fit(
     weighs by its size. `starts`: guesses, others than the scene's being drawn around it by `spread`. Raises what
     `gradient` raises, and SolveError where no run comes to its end."""
     files = [os.fspath(each) for each in ([data] if isinstance(data, (str, os.PathLike)) else data)]
-    arguments = [*files, "--wrt", ",".join(wrt), *repeated("--column", columns), *repeated("--combination", combinations)]
+    arguments = [*files, "--wrt", listed(wrt), *repeated("--column", columns), *repeated("--combination", combinations)]
     if of:
-        arguments += ["--of", ",".join(of)]
+        arguments += ["--of", listed(of)]
     if sigma:
         arguments += ["--sigma", ",".join(f"{name}={size!r}" for name, size in sigma.items())]
     if bounds:
@@ -217,6 +217,15 @@ def fit(
     if found["status"] == "failed":
         raise SolveError(found["message"])
     return found
+
+
+def listed(names: str | Sequence[str]) -> str:
+    """One name, or several, as the command line takes them. Raises TypeError where one is no text."""
+    words = [names] if isinstance(names, str) else list(names)
+    for each in words:
+        if not isinstance(each, str):
+            raise TypeError(f"of and wrt are names, and {each!r} is none: give text, as \"final.position\"")
+    return ",".join(words)
 
 
 def repeated(option: str, texts: Optional[Mapping[str, str]]) -> list[str]:

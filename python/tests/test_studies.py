@@ -94,7 +94,11 @@ class Studies(unittest.TestCase):
         )
         with stand_in("LAGROID_GRADIENT", script):
             found = lagroid.gradient(EXAMPLES / "kepler.toml", of=["final.x"], wrt=["initial", "parameters.strength"])
+            alone = lagroid.gradient(EXAMPLES / "kepler.toml", of="final.x", wrt="initial,parameters.strength")
+            with self.assertRaisesRegex(TypeError, "3 is none"):
+                lagroid.gradient(EXAMPLES / "kepler.toml", of=[3])
         self.assertEqual(found.derivatives.tolist(), [[2, 3]])
+        self.assertEqual(alone.by, found.by)
         self.assertEqual(found.by[1], "parameters.strength")
         self.assertIsNone(found.differences)
 

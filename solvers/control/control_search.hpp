@@ -1,9 +1,10 @@
 #pragma once
 /// Optimal control from many starts: one start finds one local minimum, and which one is chance. The first start is the
-/// straight trajectory, the second what the motion does by itself, bent toward the end; the others are bent by sine
-/// modes, with the momenta of such a motion (`settle`) where there are any, and two of three wind about the loops of
-/// the groupoid. From rest a car moves aside by none of the first two: there its constraints are dependent, and what
-/// would lower their violation is of second order.
+/// straight trajectory, the second what the motion does by itself, bent toward the end. Of the others every second one
+/// is a motion whose controls jump between their bounds, bent likewise; the rest are bent by sine modes, with the
+/// momenta of such a motion (`settle`) where there are any, and two of three wind about the loops of the groupoid. From
+/// rest a car moves aside by none of the first two: there its constraints are dependent, and what would lower their
+/// violation is of second order.
 ///
 ///     const ControlSearch<DubinsCar> found = search_control(task, 100, {.starts = 12});
 ///     for (const auto& each : found.minima) std::cout << each.report.cost << '\n';  // cheapest first
@@ -48,11 +49,16 @@ template <class Sys> struct ControlSearch {
   int iterations = 0;
 };
 
-/// What the motion does with controls at rest, or in the middle of their bounds, bent toward the end: node k is
-/// displaced by (k/N)^2 of what the last one is off. A trajectory to start from, where the straight one is far from any
-/// motion. None where the equations do not determine arrows, or have no solution on the way.
+/// Where a motion comes to with the controls of a trajectory and in its time, and by how much it misses the end.
+template <class Sys> struct DrivenTrajectory {
+  ControlTrajectory<Sys> trajectory;  ///< bent toward the end: node k by (k/N)^2 of what the last one is off
+  double missed = 0;
+};
+
+/// What the motion does with the controls of `path`, bent toward the end. None where the equations do not determine
+/// arrows, or have no solution on the way.
 template <class Sys>
-std::optional<ControlTrajectory<Sys>> drifting_trajectory(const ControlTask<Sys>& task, long stages) {
+std::optional<DrivenTrajectory<Sys>> driven_trajectory(const ControlTask<Sys>& task, ControlTrajectory<Sys> path) {
   using G = typename Sys::GroupoidType;
   if constexpr (Sys::equalities != G::dimension) {
     return std::nullopt;
@@ -60,8 +66,7 @@ std::optional<ControlTrajectory<Sys>> drifting_trajectory(const ControlTask<Sys>
     constexpr int n = G::dimension;
     using J = Jet<double, n>;
     const G& groupoid = task.system.groupoid;
-    ControlTrajectory<Sys> path = straight_trajectory(task, stages);
-    stages = long(path.arrows.size());
+    const long stages = long(path.arrows.size());
     const std::vector<ControlPhase<Sys>> phases = phases_of(task, stages);
     std::size_t phase = 0;
     long of_phase = 0;  // how many of its stages are done
@@ -108,8 +113,62 @@ std::optional<ControlTrajectory<Sys>> drifting_trajectory(const ControlTask<Sys>
       path.arrows[at] = groupoid.project(groupoid.compose(groupoid.inverse(before), here));
       before = here;
     }
-    return path;
+    return DrivenTrajectory<Sys>{std::move(path), off.norm()};
   }
+}
+
+/// What the motion does with controls at rest, or in the middle of their bounds, bent toward the end: a trajectory to
+/// start from, where the straight one is far from any motion.
+template <class Sys>
+std::optional<ControlTrajectory<Sys>> drifting_trajectory(const ControlTask<Sys>& task, long stages) {
+  auto driven = driven_trajectory(task, straight_trajectory(task, stages));
+  if (!driven) return std::nullopt;
+  return std::move(driven->trajectory);
+}
+
+/// Of motions whose controls jump at random between their bounds, twice on the way and all at once, the one that comes
+/// nearest to the end, bent toward it. None where no control is bounded on both sides.
+template <class Sys, class Random>
+std::optional<ControlTrajectory<Sys>> jumping_trajectory(const ControlTask<Sys>& task, long stages, Random& random) {
+  constexpr int motions = 30;
+  constexpr int pieces = 3;
+  const ControlTrajectory<Sys> straight = straight_trajectory(task, stages);
+  const std::vector<ControlPhase<Sys>> phases = phases_of(task, long(straight.arrows.size()));
+  bool any = false;
+  for (const ControlPhase<Sys>& phase : phases)
+    for (int i = 0; i < Sys::controls; ++i)
+      any = any || (std::isfinite(phase.lower(i)) && std::isfinite(phase.upper(i)) && phase.lower(i) < phase.upper(i));
+  if (!any) return std::nullopt;
+  std::uniform_real_distribution<double> share(0, 1), octave(-1, 1);
+  std::uniform_int_distribution<int> level(0, 2);
+  std::optional<DrivenTrajectory<Sys>> nearest;
+  for (int k = 0; k < motions; ++k) {
+    ControlTrajectory<Sys> path = straight;
+    const bool alternate = share(random) < 0.5;
+    std::array<double, pieces> ends{share(random), share(random), 1};
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t p = 0; p < phases.size(); ++p)
+      if (phases[p].duration_is_free) path.phases[p].step *= std::exp2(octave(random));
+    for (int i = 0; i < Sys::controls; ++i) {
+      std::array<double, pieces> levels;
+      for (double& x : levels) x = 0.5 * level(random);
+      if (alternate) levels[1] = 1 - (levels[2] = levels[0] = level(random) == 0 ? 0 : 1);
+      std::size_t phase = 0;
+      long before = 0;
+      for (std::size_t j = 0; j < path.controls.size(); ++j) {
+        while (long(j) >= before + path.phases[phase].stages) before += path.phases[phase++].stages;
+        const double low = phases[phase].lower(i), high = phases[phase].upper(i);
+        if (!std::isfinite(low) || !std::isfinite(high)) continue;
+        const double t = double(j) / double(path.controls.size());
+        const auto piece = std::size_t(std::upper_bound(ends.begin(), ends.end() - 1, t) - ends.begin());
+        path.controls[j](i) = low + levels[piece] * (high - low);
+      }
+    }
+    auto driven = driven_trajectory(task, std::move(path));
+    if (driven && (!nearest || driven->missed < nearest->missed)) nearest = std::move(driven);
+  }
+  if (!nearest) return std::nullopt;
+  return std::move(nearest->trajectory);
 }
 
 /// Start `index`, the same whatever the number of starts.
@@ -125,6 +184,11 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
   const G& groupoid = task.system.groupoid;
   std::seed_seq sequence{std::uint32_t(options.seed), std::uint32_t(options.seed >> 32), std::uint32_t(index)};
   std::mt19937_64 generator(sequence);
+  if (index % 2 == 1)
+    if (auto jumping = jumping_trajectory(task, stages, generator)) {
+      if constexpr (requires { task.system.settle(*jumping); }) task.system.settle(*jumping);
+      return *std::move(jumping);
+    }
   const AlgebroidVector<G> whole = groupoid.tau_inverse(task.boundary);
   const double length = whole.norm();
   const double amplitude = options.amplitude > 0 ? options.amplitude : length > 1e-3 ? length : 1;

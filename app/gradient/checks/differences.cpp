@@ -152,7 +152,7 @@ void count_digits(const std::vector<Compared>& columns, const RowScales& rows, G
     const bool is_nothing = most <= error && off <= error;
     const double least = is_nothing ? error : 1e-12 * rows.scales(i);
     const double digits = least > 0 ? std::log10(std::max(1.0, (is_nothing ? rows.scales(i) : most) / least)) : 16;
-    of_rounding = std::max(of_rounding, digits);
+    if (least > 0) of_rounding = std::max(of_rounding, digits);  // of a row without a size nothing is told
     if (off <= least) continue;
     table.within_rounding = false;
     fewest = std::min(fewest, std::max(0.0, std::log10(most / off)));

@@ -211,6 +211,11 @@ void describe_unknowns(const PredictedRuns& runs, const GradientSubject& subject
   const bool all_have_sigma = std::all_of(fit.columns.begin(), fit.columns.end(),
                                           [&](const Fit::Column& each) { return options.sigma.count(each.name) > 0; });
   const double error = std::isnan(fit.scale) && all_have_sigma ? 1 : left.correction(fit.rank) * fit.scale;
+  if (const double share = double(left.within) / double(left.derivatives.rows()); share < 0.5)
+    fit.notes.push_back(fmt::format(
+        "only {:.0f} % of the numbers are within --huber sigma of the run: deviations are too small then; give "
+        "--sigma as large as the errors are",
+        100 * share));
   const Eigen::VectorXd parts = found.values.head(fit.rank).cwiseInverse() * error;
   fit.covariance = seen * parts.cwiseAbs2().asDiagonal() * seen.transpose();
   const Eigen::VectorXd lost = (free * not_seen).rowwise().squaredNorm();

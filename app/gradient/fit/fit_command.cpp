@@ -74,8 +74,8 @@ void add_fit_options(CLI::App& app, FitCommandOptions& options) {
       ->check(positive_number())
       ->needs(starts);
   app.add_option("--seed", options.fit.seed, "of these")->needs(starts);
-  app.add_option("--residuals", options.residuals,
-                 "a CSV file to write: what was measured and what the fitted run has");
+  app.add_option("--residuals", options.residuals, "a CSV file to write: what was measured and what the fitted run has")
+      ->check([](const std::string& file) { return std::string(file.empty() ? "name a file" : ""); });
 }
 
 FitOptions fit_options(const FitCommandOptions& options) {

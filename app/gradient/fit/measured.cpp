@@ -117,10 +117,11 @@ class Reader {
         fit_.notes.push_back(fmt::format("{}: of {} {} of {} fields are empty or NaN, and are left out", file, name,
                                          gaps - before, table.rows.size()));
     }
+    if (table.rows.empty()) throw DataError(fmt::format("{}: it has a header and no rows", file));
     if (out.empty() && gaps > 0) throw DataError(fmt::format("{}: all fields that count are empty or NaN", file));
     if (out.empty())
-      throw DataError(
-          fmt::format("{}: nothing in it is a column of the run; there are {}", file, fmt::join(names(), ", ")));
+      throw DataError(fmt::format("{}: nothing in it is a column of the run{}; there are {}", file,
+                                  options_.columns.empty() ? "" : " that --of names", fmt::join(names(), ", ")));
     std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
     return out;
   }

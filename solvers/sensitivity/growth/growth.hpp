@@ -22,10 +22,11 @@ namespace lagroid {
 /// The units d of the components of a state.
 class OwnUnits {
  public:
-  /// Few matrices tell enough: of the first, second, fourth, ... time it is asked.
+  /// Few matrices tell enough: of the first, fourth, sixteenth, ... time it is asked.
   bool wants_matrix() {
-    ++asked_;
-    return (asked_ & (asked_ - 1)) == 0;
+    if (++asked_ < next_) return false;
+    next_ *= 4;
+    return true;
   }
   void see(const Eigen::MatrixXd& matrix);
   /// Ones for so many components where no matrix was seen.
@@ -33,6 +34,7 @@ class OwnUnits {
 
  private:
   long asked_ = 0;
+  long next_ = 1;
   long seen_ = 0;
   Eigen::MatrixXd sum_;  ///< of |A - 1|
 };

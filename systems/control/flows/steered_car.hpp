@@ -16,20 +16,24 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 #include <tuple>
 
 namespace lagroid {
+
+inline constexpr NumberRule below_a_right_angle{"positive and below pi / 2",
+                                                [](double x) { return x > 0 && x < std::numbers::pi / 2; }};
 
 struct SteeredCar : ControlledFlow<SteeredCar, Product<SE2, Pair<2>>, 2, 2> {
   double wheelbase = 1;           ///< l, m
   double largest_steering = 1.2;  ///< rad
   ControlCost cost_of = ControlCost::effort;
   static auto parameters() {
-    return std::tuple(
-        parameter("wheelbase", &SteeredCar::wheelbase, "m", "l", positive),
-        parameter("largest_steering", &SteeredCar::largest_steering, "rad", "|p| at most, below pi / 2", positive),
-        choice("cost", &SteeredCar::cost_of, control_cost_words, "integral of |u|^2, or time"));
+    return std::tuple(parameter("wheelbase", &SteeredCar::wheelbase, "m", "l", positive),
+                      parameter("largest_steering", &SteeredCar::largest_steering, "rad", "|p| at most, below pi / 2",
+                                below_a_right_angle),
+                      choice("cost", &SteeredCar::cost_of, control_cost_words, "integral of |u|^2, or time"));
   }
   static constexpr std::array<std::string_view, 5> states{"x", "y", "angle", "v", "steering"};
   static constexpr std::array<std::string_view, 5> state_units{"m", "m", "rad", "m/s", "rad"};
