@@ -153,9 +153,29 @@ class Fits(unittest.TestCase):
             refused("t,q\n0,1\n", "--combination a: it is given twice", *twice)
             refused("", "no header; the first line names t and columns of the run")
 
+    def test_a_fit_has_files_with_a_plot(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "fit"
+            data = self.measured(folder, "one run", 0.01)
+            words = ("--wrt", "parameters.length", "--out", out)
+            found = self.fitted(data, data, *words)
+            written = {"residuals.csv", "summary.json", "summary.txt", "figures.gp", "plot.svg", "plot.png"}
+            self.assertTrue(written <= {each.name for each in out.iterdir()})
+            self.assertEqual({pathlib.Path(each).name for each in found["files"]}, written)
+            self.assertEqual(json.loads((out / "summary.json").read_text())["unknowns"], found["unknowns"])
+            drawn = (out / "plot.svg").read_text()
+            for word in ("measured, run 1", "fitted, run 2"):
+                self.assertIn(word, drawn)
+            # Of other data it is another fit.
+            other = self.measured(folder, "another", 0.01, 2)
+            told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", other, *words)
+            self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+            told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--covariance", out / "summary.json", "--set", "time.steps=9")
+            self.assertEqual(told.returncode, 0, told.stderr)
+
     def test_a_sigma_far_below_the_errors_is_told_under_hubers_loss(self):
-        words = ("fit", examples / "damped_pendulum.toml", examples / "measured_pendulum.csv", "--wrt", "initial,parameters.length",
-                 "--huber", "1.345")
+        words = ("fit", examples / "damped_pendulum.toml", examples / "measured_pendulum.csv", "--wrt",
+                 "initial,parameters.length,parameters.damping", "--huber", "1.345")
         self.assertIn("% of the numbers are within --huber sigma", run(of_part("damped_pendulum"), *words, "--sigma", "q=1e-5").stdout)
         self.assertNotIn("within --huber sigma", run(of_part("damped_pendulum"), *words, "--sigma", "q=0.01").stdout)
 

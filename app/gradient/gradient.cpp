@@ -1,11 +1,13 @@
 #include "columns/computed_columns.hpp"
 #include "fit/fit_command.hpp"
+#include "fit/fit_files.hpp"
 #include "gradient_table.hpp"
 #include "minima/minimum_gradient.hpp"
 #include "system_gradients.hpp"
 #include "uncertainty.hpp"
 
 #include "../command/command.hpp"
+#include "../command/written.hpp"
 #include "../families/family.hpp"
 #include "../reading/data_set.hpp"
 #include "../reading/kinds.hpp"
@@ -14,8 +16,11 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -153,6 +158,15 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
   });
 }
 
+/// The same of a fit with its files.
+int report_with_files(const FitCommandOptions& options, const Fit& fit) {
+  std::string note, text = text_of(fit);
+  auto json = nlohmann::ordered_json::parse(json_of(fit));
+  tell_written(write_fit(fit, *options.out, note), note, text, json);
+  print(options.json ? json.dump(2) + "\n" : text);
+  return 0;
+}
+
 int fit_of_scene(const FitCommandOptions& options, const std::vector<AskGradient>& subjects) {
   const Section scene = read_scene(options.scene, options.overrides);
   if (scene.has(keys::optimisation))
@@ -161,8 +175,11 @@ int fit_of_scene(const FitCommandOptions& options, const std::vector<AskGradient
   return with_subject(options, scene, subjects, [&](const GradientSubject& plain) {
     require_place_of_residuals(options);
     const GradientSubject subject = with_columns(plain, named_texts(options.columns));
+    std::optional<OutputFolder> folder;
+    if (options.out) folder.emplace(folder_for_fit(*options.out, scene, options.data));
     const Fit fit = fit_scene(subject, options.data, fit_options(options));
-    const int code = report(options, fit, fit.failure);
+    const int code =
+        fit.failure.empty() && options.out ? report_with_files(options, fit) : report(options, fit, fit.failure);
     if (fit.failure.empty() && !options.residuals.empty()) write_text(csv_of(fit), options.residuals);
     return code == 0 && !fit.converged() ? exit_failed : code;
   });

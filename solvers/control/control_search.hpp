@@ -1,10 +1,10 @@
 #pragma once
 /// Optimal control from many starts: one start finds one local minimum, and which one is chance. The first start is the
-/// straight trajectory, the second what the motion does by itself, bent toward the end. Of the others every second one
-/// is a motion whose controls jump between their bounds, bent likewise; the rest are bent by sine modes, with the
-/// momenta of such a motion (`settle`) where there are any, and two of three wind about the loops of the groupoid. From
-/// rest a car moves aside by none of the first two: there its constraints are dependent, and what would lower their
-/// violation is of second order.
+/// straight trajectory, the second what the motion does by itself, bent toward the end. Of the others, from the sixth
+/// on, every second one is a motion whose controls jump between their bounds, bent likewise; the rest are bent by sine
+/// modes, with the momenta of such a motion (`settle`) where there are any, and two of three wind about the loops of
+/// the groupoid. From rest a car moves aside by none of the first two: there its constraints are dependent, and what
+/// would lower their violation is of second order.
 ///
 ///     const ControlSearch<DubinsCar> found = search_control(task, 100, {.starts = 12});
 ///     for (const auto& each : found.minima) std::cout << each.report.cost << '\n';  // cheapest first
@@ -184,7 +184,8 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
   const G& groupoid = task.system.groupoid;
   std::seed_seq sequence{std::uint32_t(options.seed), std::uint32_t(options.seed >> 32), std::uint32_t(index)};
   std::mt19937_64 generator(sequence);
-  if (index % 2 == 1)
+  constexpr int bends_first = 4;  // up to there, one for each way to wind
+  if (index > bends_first && index % 2 == 1)
     if (auto jumping = jumping_trajectory(task, stages, generator)) {
       if constexpr (requires { task.system.settle(*jumping); }) task.system.settle(*jumping);
       return *std::move(jumping);
@@ -198,9 +199,10 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
   Eigen::Matrix<double, Sys::dimension, modes> bends;
   for (double& x : bends.reshaped()) x = normal(generator);
 
-  // Of three starts in succession one winds forward about each loop, one backward and one not at all.
+  const int bent = index <= bends_first ? index - 2 : index / 2;
+  // Of three bends in succession one winds forward about each loop, one backward and one not at all.
   Eigen::VectorXd turns = Eigen::VectorXd::Zero(loop_count(task.system));
-  for (int i = 0; i < turns.size(); ++i) turns(i) = std::array<int, 3>{1, -1, 0}[std::size_t((index - 2 + i) % 3)];
+  for (int i = 0; i < turns.size(); ++i) turns(i) = std::array<int, 3>{1, -1, 0}[std::size_t((bent + i) % 3)];
 
   ArrowOf<G> reached = groupoid.unit(groupoid.source(task.boundary));
   ArrowOf<G> before = reached;

@@ -74,6 +74,9 @@ void add_fit_options(CLI::App& app, FitCommandOptions& options) {
       ->check(positive_number())
       ->needs(starts);
   app.add_option("--seed", options.fit.seed, "of these")->needs(starts);
+  app.add_option("--out", options.out,
+                 "a folder for residuals, summary and a plot of what was measured beside what the fitted run has")
+      ->check([](const std::string& folder) { return std::string(folder.empty() ? "name a folder" : ""); });
   app.add_option("--residuals", options.residuals, "a CSV file to write: what was measured and what the fitted run has")
       ->check([](const std::string& file) { return std::string(file.empty() ? "name a file" : ""); });
 }

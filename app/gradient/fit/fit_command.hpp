@@ -11,6 +11,7 @@
 #include "../../command/command.hpp"
 #include "fit.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct FitCommandOptions : SceneOptions {
   FitOptions fit;
   std::vector<std::string> columns, combinations, sigma, bounds;
   std::string residuals;
+  std::optional<std::string> out;
 };
 
 /// Those of its own, but for --column.
