@@ -35,7 +35,7 @@ std::string_view in_words(Curvature curvature) {
     case Curvature::strict_minimum:
       return ", a strict local minimum";
     case Curvature::saddle:
-      return ", a saddle: near it are motions that cost less; try more [search] starts";
+      return ", a saddle: near it are motions that cost less; try more solver.starts";
   }
   return "";
 }

@@ -253,6 +253,7 @@ void SceneAdjoint::give_back(const Evaluation& each, const std::vector<VariedVec
 }
 
 void SceneAdjoint::push_back(const SceneState& node, const std::vector<Vec>& s, Balance* balance) {
+  pushed_.time = node.at.time;
   pushed_.at = node.at.x;
   pushed_.along = s;
   pushed_.back.resize(s.size());

@@ -130,9 +130,12 @@ class SceneAdjoint {
   Eigen::MatrixXd taken_;
   /// Where it went last. Steps are taken back one before the other: where the one begins the next one ends.
   struct Pushed {
+    double time = 0;
     std::vector<Vec> at, along, back;
     Eigen::VectorXd by_numbers;
-    bool stands(const SceneState& node, const std::vector<Vec>& s) const { return at == node.at.x && along == s; }
+    bool stands(const SceneState& node, const std::vector<Vec>& s) const {
+      return time == node.at.time && at == node.at.x && along == s;
+    }
   };
   Pushed pushed_;
 };

@@ -326,5 +326,45 @@ TEST(ChainGradients, SeeWhatBeginsToActOnTheWay) {
   }
 }
 
+/// A push that rises with time; of size zero.
+template <class S> struct Rising {
+  std::array<Site, 1> sites;
+  S size;
+  S energy(const BasicConfiguration<S>& at) const { return -size * at.time * at(sites[0])(0); }
+  void add_loads(const BasicConfiguration<S>& at, BasicLoads<S>& f) const { f(sites[0])(0) += size * at.time; }
+};
+/// A mass that nothing moves, and that the number would push the more the later it is.
+struct AtRest {
+  template <class S> BasicScene<S> operator()(const std::vector<S>& x) const {
+    BasicScene<S> scene;
+    const Body bob = scene.point_mass(S(1.0), Vec3<S>::Zero(), Vec3<S>::Zero());
+    scene.add(Rising<S>{{bob.centre}, x[0]});
+    return scene;
+  }
+};
+
+// All nodes are one but for their times, and yet what is kept of one is none of another's.
+TEST(ChainGradients, TakenBackAreOfTheirOwnNodes) {
+  const std::vector<double> numbers{0.0};
+  const auto momentum = [](const ObservedScene& node) {
+    VariedNumbers out(1);
+    out(0) = node.momentum[0](0);
+    return out;
+  };
+  const auto motion = [&] {
+    return LinearisedScene(Multibody(AtRest()(numbers), 0.0625), {"size"}, numbers, [momentum](const auto& x) {
+      return WrittenScene{AtRest()(x), momentum};
+    });
+  };
+  LinearisedScene forward = motion(), backward = motion();
+  const Propagated wanted = propagate_forward(forward, 20, Eigen::MatrixXd::Identity(7, 7));
+  ASSERT_TRUE(wanted.converged());
+  EXPECT_NEAR(wanted.derivatives(0, 6), 1.25 * 1.25 / 2, 1e-13);
+  for (const char* pass : {"first", "second"}) {
+    const Propagated found = propagate_backward(backward, 20);
+    EXPECT_LT((found.derivatives - wanted.derivatives).norm(), 1e-13 * wanted.derivatives.norm()) << pass;
+  }
+}
+
 }  // namespace
 }  // namespace lagroid::multibody::chain_gradients_tests
