@@ -114,15 +114,6 @@ int gradient_of_optimum(const GradientOptions& options, const Section& scene, Se
   return minima(scene, {options.scene, options.of, options.by, options.check, options.json});
 }
 
-/// Of words that name something, without blanks at their ends.
-CLI::Validator named() {
-  return {[](std::string& word) {
-            CLI::detail::trim(word);
-            return std::string(word.empty() ? "an empty name; leave the option out for all that there is" : "");
-          },
-          ""};
-}
-
 std::vector<std::string> rows_asked(const GradientOptions& options, const GradientSubject& subject) {
   if (!options.of.empty()) return options.of;
   return {subject.cost ? "cost" : "final"};

@@ -33,18 +33,9 @@ CLI::Validator positive_number() {
           "positive"};
 }
 
-/// Words of a list without blanks at their ends.
-CLI::Validator trimmed() {
-  return {[](std::string& word) {
-            CLI::detail::trim(word);
-            return std::string();
-          },
-          ""};
-}
-
 /// An option that is a list of words, separated by commas.
 void add_list(CLI::App& app, const char* name, std::vector<std::string>& words, const char* meaning) {
-  app.add_option(name, words, meaning)->delimiter(',')->allow_extra_args(false)->transform(trimmed());
+  app.add_option(name, words, meaning)->delimiter(',')->allow_extra_args(false)->transform(named());
 }
 
 /// Keeps what a word gives a name; refuses another for it.
@@ -54,6 +45,14 @@ void give_once(Given& given, const char* option, const std::string& name, const 
 }
 
 }  // namespace
+
+CLI::Validator named() {
+  return {[](std::string& word) {
+            CLI::detail::trim(word);
+            return std::string(word.empty() ? "an empty name; give one, or leave the option out" : "");
+          },
+          ""};
+}
 
 void add_fit_options(CLI::App& app, FitCommandOptions& options) {
   app.add_option("data", options.data, "CSV or HDF5 files with t and columns of the run; one for each run")->required();
@@ -76,9 +75,9 @@ void add_fit_options(CLI::App& app, FitCommandOptions& options) {
   app.add_option("--seed", options.fit.seed, "of these")->needs(starts);
   app.add_option("--out", options.out,
                  "a folder for residuals, summary and a plot of what was measured beside what the fitted run has")
-      ->check([](const std::string& folder) { return std::string(folder.empty() ? "name a folder" : ""); });
+      ->transform(named());
   app.add_option("--residuals", options.residuals, "a CSV file to write: what was measured and what the fitted run has")
-      ->check([](const std::string& file) { return std::string(file.empty() ? "name a file" : ""); });
+      ->transform(named());
 }
 
 FitOptions fit_options(const FitCommandOptions& options) {

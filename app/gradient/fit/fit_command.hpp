@@ -25,6 +25,9 @@ struct FitCommandOptions : SceneOptions {
   std::optional<std::string> out;
 };
 
+/// Of a word that names something: without blanks at its ends, and not empty.
+CLI::Validator named();
+
 /// Those of its own, but for --column.
 void add_fit_options(CLI::App& app, FitCommandOptions& options);
 
