@@ -23,6 +23,7 @@
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
+#include <lagroid/solvers/testing/symplectic_form.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -35,21 +36,6 @@
 namespace lagroid::laws {
 
 namespace detail {
-
-/// Omega in the coordinates (displacement, momentum) of a state.
-template <Groupoid G> Eigen::MatrixXd symplectic_form(const G& groupoid, const State<G>& state) {
-  constexpr int n = G::dimension;
-  const LieAlgebroid<G> algebroid(groupoid);
-  Eigen::MatrixXd form = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  for (int i = 0; i < n; ++i) {
-    form(i, n + i) = -1;
-    form(n + i, i) = 1;
-    for (int j = 0; j < n; ++j)
-      form(i, j) = -state.momentum.dot(
-          algebroid.frame_bracket(state.object, unit_vector<double, n>(i), unit_vector<double, n>(j)));
-  }
-  return form;
-}
 
 /// The directions along which a state may move: displacements that keep the object constraints, and all momenta.
 template <DiscreteSystem Sys>
