@@ -5,11 +5,12 @@
 ///
 ///     int main(int argc, char** argv) { return lagroid::program(argc, argv, {lagroid::module<Dido>()}); }
 ///
-/// One source makes three programs (`lagroid_program` in CMake; `lagroid run dido.cpp` builds the one that it needs):
+/// One source makes four programs (`lagroid_program` in CMake; `lagroid run dido.cpp` builds the one that it needs):
 ///
 ///     LAGROID_STEPS_ALONE defined   equal steps of the discrete Lagrangian alone: seconds to compile
 ///     neither                       all methods, studies, sweeps, boundary values
 ///     LAGROID_WITH_LAWS defined     the laws: `check`
+///     LAGROID_WITH_DERIVATIVES      exact derivatives of runs: `gradient` and `fit`
 ///
 /// Poisson systems are modules too (own_poisson.hpp).
 ///
@@ -32,6 +33,12 @@
 #include <lagroid/solvers/testing/reduced_certificate.hpp>
 #endif
 
+#if defined(LAGROID_WITH_DERIVATIVES)
+#include "gradient/columns/given_directions.hpp"
+#include "gradient/gradient_subject_of.hpp"
+#include "own/own_gradient.hpp"
+#endif
+
 #include "own/own_parts.hpp"
 
 #include <algorithm>
@@ -52,6 +59,9 @@ struct Module {
 #if defined(LAGROID_WITH_LAWS)
   std::function<Certificate(const app::Section& scene, const app::CheckCommandOptions& options)> certify;
 #endif
+#if defined(LAGROID_WITH_DERIVATIVES)
+  app::AskGradient differentiate;
+#endif
 };
 
 /// The module of a system for scenes with `system = "NAME"`: its parameters are those that it declares
@@ -70,6 +80,12 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
   return {.of = made, .certify = [made](const app::Section& scene, const app::CheckCommandOptions& options) {
             return app::certify(made->prepare(scene, {.progress = !options.json}), options);
           }};
+#elif defined(LAGROID_WITH_DERIVATIVES)
+  return {.of = made, .differentiate = [made](const app::Section& scene) -> std::optional<app::GradientSubject> {
+            if (&app::module_of_scene(scene) != made.get()) return std::nullopt;
+            return app::in_numbers_of_the_scene(app::gradient_subject_of(made->prepare(scene, {}), scene),
+                                                app::given_directions<Sys>(scene));
+          }};
 #else
   return {.of = made};
 #endif
@@ -77,7 +93,8 @@ Module module(std::string name = app::snake_case(typeid(Sys)), std::string summa
 }
 
 /// Serves a command line of lagroid for these systems: run, resume, view, plot, study, sweep, list, schema, cite and,
-/// where the program beside it with the laws is built, check. Returns the exit code.
+/// where the programs beside it with laws and with derivatives are built, check, gradient and fit. Returns the exit
+/// code.
 inline int program(int argc, char** argv, std::vector<Module> modules) {
   app::OwnSystems systems;
   for (const Module& each : modules) {
@@ -90,6 +107,11 @@ inline int program(int argc, char** argv, std::vector<Module> modules) {
     return std::find_if(modules.begin(), modules.end(), is)->certify(scene, how);
   };
   return app::own_check_program(argc, argv, std::move(systems), ask);
+#elif defined(LAGROID_WITH_DERIVATIVES)
+  std::vector<app::AskGradient> subjects;
+  for (const Module& each : modules)
+    if (each.differentiate) subjects.push_back(each.differentiate);
+  return app::own_gradient_program(argc, argv, std::move(systems), std::move(subjects));
 #elif defined(LAGROID_STEPS_ALONE)
   try {
     return app::own_program(argc, argv, std::move(systems));

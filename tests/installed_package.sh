@@ -69,10 +69,13 @@ if [ -e "$prefix/include/lagroid/run/run.hpp" ] && find "$prefix" -name lagroid-
 fi
 if [ -n "$whole" ] && [ -x "$prefix/bin/lagroid" ]; then
   "$prefix/bin/lagroid" new system spring_bob --out "$work/spring_bob" >/dev/null
+  sed -i 's/COMPONENTS commands laws/COMPONENTS commands derivatives laws/' "$work/spring_bob/CMakeLists.txt"
   cmake -S "$work/spring_bob" -B "$work/spring_bob/build" -DCMAKE_PREFIX_PATH="$prefix" >"$work/configure.log" 2>&1 ||
     { cat "$work/configure.log" >&2; fail "lagroid_program does not configure"; }
   cmake --build "$work/spring_bob/build" >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "lagroid_program does not build"; }
   (cd "$work/spring_bob/build" && ctest >"$work/ctest.log" 2>&1) || { cat "$work/ctest.log" >&2; fail "lagroid_program breaks a law"; }
+  "$work/spring_bob/build/spring_bob" gradient "$work/spring_bob/spring_bob.toml" --set time.steps=50 --check >"$work/gradient.log" ||
+    fail "lagroid_program has no derivatives"
 fi
 if [ -n "$whole" ]; then
   cmake --build "$work/cmake" --target laws >"$work/build.log" 2>&1 || { cat "$work/build.log" >&2; fail "no laws"; }

@@ -95,6 +95,18 @@ if [ -n "$whole" ]; then
   sed 's/{0, 2, -x(1)}/{0, 2, x(0)}/' my_levels/my_levels.cpp >no_bracket.cpp
   ! "$lagroid" run no_bracket.cpp my_levels/my_levels.toml >check.log 2>&1 || fail "a bracket that is none runs"
   grep -q Jacobi check.log || { cat check.log >&2; fail "the broken identity is not named"; }
+  # Derivatives of its runs, by all of its numbers, and of its bracket's; its own numbers back from its data.
+  "$lagroid" run spring_bob/spring_bob.cpp gradient spring_bob/spring_bob.toml --set time.steps=50 --check --json >gradient.json 2>gradient.log || { cat gradient.log >&2; fail "its runs have no derivatives"; }
+  "$lagroid" run spring_bob/spring_bob.cpp spring_bob/spring_bob.toml --set parameters.stiffness=2 --set time.steps=100 --out measured >run.log
+  "$lagroid" run spring_bob/spring_bob.cpp fit spring_bob/spring_bob.toml measured/trajectory.csv --wrt parameters.stiffness --json >fit.json 2>fit.log || { cat fit.log >&2; fail "its numbers are not fitted"; }
+  "$lagroid" run my_levels/my_levels.cpp gradient my_levels/my_levels.toml --set time.steps=50 --check --json >levels.json 2>gradient.log || { cat gradient.log >&2; fail "the bracket's runs have no derivatives"; }
+  /usr/bin/python3 - <<'PYTHON' || fail "its derivatives are not those of its runs"
+import json
+for file, number in ("gradient.json", "parameters.stiffness"), ("levels.json", "parameters.stretch"):
+    found = json.load(open(file))
+    assert number in found["by"] and found["digits_agreed"] > 7 and not found["contradicted"], found
+assert abs(json.load(open("fit.json"))["unknowns"][0]["value"] - 2) < 1e-9
+PYTHON
   "$lagroid" new groupoid hills >/dev/null
   "$lagroid" run hills/on_hills.cpp >run.log 2>&1 || { cat run.log >&2; fail "the groupoid does not run"; }
   "$lagroid" run hills/on_hills.cpp check hills/on_hills.toml >check.log 2>&1 || { cat check.log >&2; fail "the laws of the groupoid do not hold"; }

@@ -36,6 +36,7 @@ struct Recipe {
   std::vector<std::string> archives;   ///< of lagroid
   std::vector<std::string> libraries;  ///< of others
   std::vector<std::string> libraries_of_laws;
+  std::vector<std::string> archives_of_derivatives;  ///< before those of lagroid
 
   std::vector<std::string> command(OwnPart part) const {
     std::vector<std::string> words{compiler};
@@ -43,11 +44,13 @@ struct Recipe {
     if (part == OwnPart::steps) words.emplace_back("-DLAGROID_STEPS_ALONE");
     // The laws are many instances, each run for a moment.
     if (part == OwnPart::laws) words.insert(words.end(), {"-DLAGROID_WITH_LAWS", "-O1"});
+    if (part == OwnPart::derivatives)
+      words.insert(words.end(), {"-DLAGROID_WITH_DERIVATIVES", "-DLAGROID_COMPACT", "-O1"});
     return words;
   }
 };
 
-Recipe recipe() {
+Recipe recipe(OwnPart part) {
   const fs::path prefix = fs::canonical("/proc/self/exe").parent_path().parent_path();
   for (const char* name : {"own_program.json", "share/lagroid/own_program.json"}) {
     std::ifstream file(prefix / name);
@@ -66,12 +69,15 @@ Recipe recipe() {
     json.at("archives").get_to(out.archives);
     json.at("libraries").get_to(out.libraries);
     json.at("libraries of laws").get_to(out.libraries_of_laws);
+    json.at("archives of derivatives").get_to(out.archives_of_derivatives);
     std::erase_if(out.flags, [](const std::string& flag) { return flag.empty() || flag == "-I" || flag == "-D"; });
+    if (part == OwnPart::derivatives)
+      out.archives.insert(out.archives.begin(), out.archives_of_derivatives.begin(), out.archives_of_derivatives.end());
     for (const std::string& archive : out.archives)
       if (!fs::exists(archive))
         throw BuildRefused(
             fmt::format("{} is not there: a program of your own needs the library; install the package "
-                        "liblagroid-dev, or build the target lagroid_own",
+                        "liblagroid-dev, or build the targets lagroid_own and lagroid_derivatives",
                         archive));
     return out;
   }
@@ -175,7 +181,7 @@ void compile(const std::vector<std::string>& words, const fs::path& out, const f
 }  // namespace
 
 fs::path built_from(const fs::path& source, OwnPart part, const std::function<void()>& told) {
-  const Recipe how = recipe();
+  const Recipe how = recipe(part);
   const fs::path cache = cache_folder();
   const Scratch scratch(cache);
   std::vector<std::string> words = how.command(part);

@@ -18,7 +18,7 @@ class BuildRefused : public std::runtime_error {
 };
 
 /// How much of a program (own_program.hpp).
-enum class OwnPart { steps, methods, laws };
+enum class OwnPart { steps, methods, laws, derivatives };
 
 /// The program that a C++ source makes, compiled where the cache does not hold it: under the text that the preprocessor
 /// leaves of it, the compiler's flags and the library. The cache is $XDG_CACHE_HOME/lagroid, or ~/.cache/lagroid, which

@@ -50,7 +50,7 @@ std::vector<std::string> words_for(const fs::path& source, std::vector<std::stri
 }
 
 fs::path built(const fs::path& source, OwnPart part) {
-  const std::array what{"", " with all methods", " with its laws"};
+  const std::array what{"", " with all methods", " with its laws", " with derivatives of its runs"};
   return built_from(source, part,
                     [&] { complain(fmt::format("compiling {}{}", source.string(), what[std::size_t(part)])); });
 }
@@ -59,6 +59,13 @@ int carry_out(const fs::path& source, const std::vector<std::string>& words) {
   const std::string command = words.empty() ? "" : words[0];
   const auto is = [&](const char* name) { return command == name; };
   if (is("check")) become(built(source, OwnPart::laws), {words.begin() + 1, words.end()});
+  for (const std::string& word : words)
+    if (is("run") && (word.starts_with("--covariance") || word.starts_with("--deviations")))
+      return refuse(false, exit_bad_input, "invalid_command_line",
+                    fmt::format("{}: of a source, lagroid run {} gradient SCENE {} has what errors become", word,
+                                source.string(), word));
+  if (is("gradient")) become(built(source, OwnPart::derivatives), {words.begin() + 1, words.end()});
+  if (is("fit")) become(built(source, OwnPart::derivatives), words);
   if (is("study") || is("sweep")) become(built(source, OwnPart::methods), words);
   const fs::path steps = built(source, OwnPart::steps);
   std::string asked = (fs::temp_directory_path() / "lagroid-XXXXXX").string();

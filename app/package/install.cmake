@@ -53,12 +53,15 @@ if(LAGROID_APP)
   # What programs of one's own are made of.
   install(TARGETS lagroid_commands lagroid_viewer EXPORT lagroid-commands-targets COMPONENT development)
   install(EXPORT lagroid-commands-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
+  install(TARGETS lagroid_derivatives EXPORT lagroid-derivatives-targets COMPONENT development)
+  install(EXPORT lagroid-derivatives-targets NAMESPACE lagroid:: DESTINATION ${cmake_folder} COMPONENT development)
   install(FILES ${PROJECT_SOURCE_DIR}/app/own_poisson.hpp ${PROJECT_SOURCE_DIR}/app/own_program.hpp
                 ${PROJECT_SOURCE_DIR}/app/program.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app COMPONENT development)
-  foreach(folder own reading keys scenes reductions families command check poisson)
+  foreach(folder own reading keys scenes reductions families command check gradient poisson)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/app/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lagroid/app
-            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "templates" EXCLUDE)
+            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "templates" EXCLUDE
+            PATTERN "minima" EXCLUDE PATTERN "spheres" EXCLUDE)  # of gradient: they need other folders
   endforeach()
   install(FILES ${PROJECT_BINARY_DIR}/installed/own_program.json DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/lagroid
           COMPONENT development)
