@@ -36,6 +36,9 @@ namespace {
 struct RunOptions : SceneOptions {
   std::optional<std::string> out;
   bool other_build = false;
+  std::string covariance;
+  std::vector<std::string> deviations;
+  bool carries_errors() const { return !covariance.empty() || !deviations.empty(); }
 };
 
 /// The scene of a run that is taken up, of which only the number of steps may change.
@@ -58,6 +61,40 @@ int hand_over(std::string_view name, const RunOptions& options, const std::vecto
   return command->run_scene(options, options.out);
 }
 
+/// Hands over to a program beside lagroid, NAME-check or NAME-gradient beside NAME: what they hold of every system
+/// takes long to compile, and whoever only runs scenes need not wait for it.
+int hand_over_beside(const std::string& command, const std::string& status, const std::string& what,
+                     SceneOptions options, int argc, char** argv) {
+  options.json = asks_for_json(argc, argv);
+  const std::string program = std::filesystem::canonical("/proc/self/exe").string();
+  const std::string beside = program + "-" + command;
+  ::execv(beside.c_str(), argv);
+  return refuse(
+      options.json, exit_bad_input, status,
+      fmt::format("{}: {}; it holds the {}, and was not built: build the target {}_{}, of a program of your own with "
+                  "the component of find_package that makes it, or install a package that has it",
+                  beside, std::strerror(errno), what, std::filesystem::path(program).filename().string(), command));
+}
+int hand_over_to_gradients(const SceneOptions& options, int argc, char** argv) {
+  return hand_over_beside("gradient", "no_gradients", "derivatives of runs", options, argc, argv);
+}
+
+/// Goes on with what errors of the start and of parameters become along the run: lagroid gradient has their table.
+int carry_errors(const RunOptions& options) {
+  print(options.covariance.empty()
+            ? "\n"
+            : fmt::format("\n  from the numbers that were fitted ({}) in place of the scene's:\n", options.covariance));
+  std::vector<std::string> words{"gradient", options.scene};
+  for (const std::string& each : options.overrides) words.insert(words.end(), {"--set", each});
+  if (!options.covariance.empty()) words.insert(words.end(), {"--covariance", options.covariance});
+  if (!options.deviations.empty())
+    words.insert(words.end(), {"--deviations", fmt::format("{}", fmt::join(options.deviations, ","))});
+  std::vector<char*> argv;
+  for (std::string& each : words) argv.push_back(each.data());
+  argv.push_back(nullptr);
+  return hand_over_to_gradients(options, int(words.size()), argv.data());
+}
+
 /// Runs the scene, or takes up the run in the folder `out`.
 int run(const RunOptions& options, bool resume, const std::vector<ProgramCommand>& commands) {
   RunResult result;
@@ -65,7 +102,14 @@ int run(const RunOptions& options, bool resume, const std::vector<ProgramCommand
   try {
     const Section scene =
         resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
-    if (const auto command = family_of(scene).command(); command != "run") return hand_over(command, options, commands);
+    if (const auto command = family_of(scene).command(); command != "run") {
+      if (options.carries_errors())
+        throw RunError(fmt::format("{}: errors are carried along motions; this is carried out by lagroid {}",
+                                   options.scene, command));
+      return hand_over(command, options, commands);
+    }
+    if (!options.covariance.empty() && !std::filesystem::is_regular_file(options.covariance))
+      throw RunError(fmt::format("{}: no such file; lagroid fit --json prints what it is to hold", options.covariance));
     if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene.whole()));
     if (resume) Checkpoint::require_this_build(*options.out, options.other_build);
     result = run_scene(scene, {.record = options.out.has_value(),
@@ -87,7 +131,8 @@ int run(const RunOptions& options, bool resume, const std::vector<ProgramCommand
   if (!result.output_error.empty()) complain(result.output_error);
   if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
   if (!result.converged() || !result.output_error.empty()) return exit_failed;
-  return code_after_writing(0, resume ? *options.out : options.scene);
+  const int code = code_after_writing(0, resume ? *options.out : options.scene);
+  return code == 0 && options.carries_errors() ? carry_errors(options) : code;
 }
 
 /// Writes something from a run's folder: `make` returns the files.
@@ -103,21 +148,6 @@ int from_run(const std::function<std::vector<std::filesystem::path>()>& make) {
   }
 }
 
-/// Hands over to a program beside lagroid, NAME-check or NAME-gradient beside NAME: what they hold of every system
-/// takes long to compile, and whoever only runs scenes need not wait for it.
-int hand_over_beside(const std::string& command, const std::string& status, const std::string& what,
-                     SceneOptions options, int argc, char** argv) {
-  options.json = asks_for_json(argc, argv);
-  const std::string program = std::filesystem::canonical("/proc/self/exe").string();
-  const std::string beside = program + "-" + command;
-  ::execv(beside.c_str(), argv);
-  return refuse(
-      options.json, exit_bad_input, status,
-      fmt::format("{}: {}; it holds the {}, and was not built: build the target {}_{}, or install a package "
-                  "that has it",
-                  beside, std::strerror(errno), what, std::filesystem::path(program).filename().string(), command));
-}
-
 }  // namespace
 
 int program(int argc, char** argv, ProgramParts parts) {
@@ -130,6 +160,15 @@ int program(int argc, char** argv, ProgramParts parts) {
   CLI::App* run_command = app.add_subcommand("run", "run a scene (see docs/scenes.md)");
   add_scene_options(*run_command, options);
   run_command->add_option("--out", options.out, "write trajectory, plot and summary files into this folder");
+  auto* json = run_command->get_option("--json");
+  auto* covariance = run_command->add_option("--covariance", options.covariance,
+                                             "what lagroid fit --json printed, as a file: what the errors of its "
+                                             "solution become at the end, by lagroid gradient --covariance");
+  auto* deviations = run_command->add_option("--deviations", options.deviations,
+                                             "initial.NAME=SIGMA or parameters.NAME=SIGMA, separated by commas: the "
+                                             "same of independent errors, by lagroid gradient --deviations");
+  covariance->excludes(json);
+  deviations->delimiter(',')->allow_extra_args(false)->excludes(json)->excludes(covariance);
   CLI::App* resume_command =
       app.add_subcommand("resume", "go on with a run that was broken off, or with a finished one");
   resume_command->add_option("run", options.out, "the folder that lagroid run --out wrote")->required();
@@ -186,8 +225,7 @@ int program(int argc, char** argv, ProgramParts parts) {
     }
     if (schema_command->parsed()) return schema(schema_options);
     if (check_command->parsed()) return hand_over_beside("check", "no_laws", "laws", options, argc - 1, argv + 1);
-    if (gradient_command->parsed() || fit_command->parsed())
-      return hand_over_beside("gradient", "no_gradients", "derivatives of runs", options, argc - 1, argv + 1);
+    if (gradient_command->parsed() || fit_command->parsed()) return hand_over_to_gradients(options, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options, false, commands);
     if (resume_command->parsed()) return run(options, true, commands);
     if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });

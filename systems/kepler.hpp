@@ -9,6 +9,7 @@
 ///     kepler.h = 0.05;
 ///     const double energy = kepler.energy({{1, 0}, {0, 1.2}});
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/groupoids/connections.hpp>
@@ -89,6 +90,11 @@ struct Kepler : MechanicalSystem<Kepler, 2> {
     const S radial = (r1 - r0) * (r1 - r0) * 0.5 + S(sine * sine) / (r0 * r1 + cosine);
     return radial * (1 / h) + (1.0 / r0 + 1.0 / r1) * (constant<S>(varied<S>(strength)) * (0.5 * h)) -
            atan2(S(sine), cosine) * momentum(0);
+  }
+  static std::vector<ObservedName> observed_names() { return {{"H", "energy"}, {"L", "angular momentum"}}; }
+  template <class S> Vector<S, 2> observed(const State<Pair<2>, S>& s, const PairArrow<S, 2>& /*configuration*/) const {
+    const auto& [q, p] = s;
+    return {kinetic_energy(p) + potential_energy(q), q(0) * p(1) - q(1) * p(0)};
   }
   std::vector<Quantity<Kepler>> quantities() const { return {energy_quantity(), symmetries()[0].quantity()}; }
 };

@@ -13,6 +13,7 @@
 /// Requires `mass` and `potential`, the latter over any scalar; with object constraints, flows, rates and reference are
 /// the derived class' own.
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/capabilities/split_system.hpp>
 #include <lagroid/core/derivatives/directional.hpp>
@@ -89,6 +90,11 @@ struct MechanicalSystem : System<Derived, Pair<N>, 0, ObjectConstraints> {
     return p.dot(Vector<S, N>(p / constant<S>(mass_in<S>()))) * 0.5;
   }
   template <class S> S potential_energy(const Vector<S, N>& q) const { return self().potential(q); }
+
+  static std::vector<ObservedName> observed_names() { return {{"H", "energy"}}; }
+  template <class S> Vector<S, 1> observed(const State<Pair<N>, S>& s, const PairArrow<S, N>& /*configuration*/) const {
+    return Vector<S, 1>(kinetic_energy(s.momentum) + potential_energy(s.object));
+  }
 
  protected:
   static constexpr auto quadrature_parameter() {

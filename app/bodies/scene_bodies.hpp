@@ -206,7 +206,7 @@ inline bool is_reversible(const SceneBodies& bodies) { return is_symplectic(bodi
 
 /// Whether steps of it can be composed to higher orders.
 inline bool is_composable(const SceneBodies& bodies) {
-  return !bodies.dissipates && !bodies.nonholonomic && !bodies.vakonomic;
+  return !bodies.dissipates && !bodies.nonholonomic && !bodies.vakonomic && !bodies.gyroscopic;
 }
 
 /// Reads [[body]], [[joint]] and [[effect]]; `on_its_way` with numbers that are not those of its start.

@@ -58,9 +58,12 @@ template <class S>
 void require_turning(const Section& table, const std::array<BasicAttachment<S>, 2>& ends, const std::string& kind) {
   for (const BasicAttachment<S>& end : ends) {
     if (end.turns_in_space()) continue;
+    const bool rubs = table.has(turning_damping.name);
     table.fail(
-        "between",
-        end.body->planar
+        rubs ? turning_damping.name : "between",
+        end.body->planar && rubs
+            ? fmt::format("\"{}\" turns in the plane only, where joints do not rub; leave it out", end.name())
+        : end.body->planar
             ? fmt::format("\"{}\" turns in the plane only: a joint of kind \"ball\" is its hinge", end.name())
             : fmt::format("\"{}\" is a point mass and does not turn: a {} needs bodies that do", end.name(), kind));
   }

@@ -56,8 +56,10 @@ multibody::Options read_options(const Section& scene, const SceneBodies& bodies)
   if (options.controlled) refuse_duration(time);
   options.composition = read_composition(time, compositions::all);
   if (options.composition.stages() > 1 && (options.controlled || !is_composable(bodies)))
-    time.fail(time.has("order") ? "order" : "composition",
-              "above 2 goes with equal steps of scenes without damping and without joints that hold velocities");
+    time.fail(
+        time.has("order") ? "order" : "composition",
+        "above 2 goes with equal steps of scenes without damping, magnetic fields and turning frames, and without "
+        "joints that hold velocities");
   return options;
 }
 

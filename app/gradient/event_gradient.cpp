@@ -99,7 +99,7 @@ class Rows {
     };
     if (place.node < 0 && (name == "t" || name.empty())) add(-1, "t");
     if (name != "t")
-      for (const int column : chosen_names(subject_.observed, word, name))
+      for (const int column : chosen_rows(subject_, word, name))
         add(column, subject_.observed[std::size_t(column)].name);
     if (out.empty()) throw GradientRefused(fmt::format("{}: the times of nodes depend on nothing", word));
     return out;
@@ -119,7 +119,8 @@ class Rows {
     const auto happened = std::count_if(run_.happened.begin(), run_.happened.end(),
                                         [&](const auto& each) { return each.event == event; });
     if (number < 1 || number > happened)
-      throw GradientRefused(fmt::format("{}: \"{}\" has happened {} times", word, subject_.events[event], happened));
+      throw GradientRefused(fmt::format("{}: \"{}\" has happened {} times, which are counted from 1", word,
+                                        subject_.events[event], happened));
   }
 
   const GradientSubject& subject_;

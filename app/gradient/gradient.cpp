@@ -36,6 +36,7 @@ struct GradientOptions : SceneOptions {
   std::vector<std::string> deviations;
   std::string covariance;
   Draws draws;
+  StateBudget budget;
 };
 
 /// --column of both commands.
@@ -83,7 +84,7 @@ int with_subject(const SceneOptions& options, const Section& scene, const std::v
     scene.fail(keys::control,
                "there are no derivatives of what lagroid control finds; its costates (lagroid control "
                "--out) say how the cost changes with the states");
-  for (const AskGradient ask : subjects) {
+  for (const AskGradient& ask : subjects) {
     try {
       const auto subject = ask(scene);
       if (!subject) continue;
@@ -107,7 +108,8 @@ int gradient_of_optimum(const GradientOptions& options, const Section& scene, Se
   if (minima == nullptr) scene.fail(keys::optimisation, "this program has no derivatives of minima");
   for (const auto& [is_given, option] :
        {std::pair(!options.columns.empty(), "--column"), std::pair(!options.deviations.empty(), "--deviations"),
-        std::pair(!options.covariance.empty(), "--covariance"), std::pair(options.draws.count > 0, "--draws")})
+        std::pair(!options.covariance.empty(), "--covariance"), std::pair(options.draws.count > 0, "--draws"),
+        std::pair(options.budget.states > 0, "--states")})
     if (is_given)
       return refuse(options.json, exit_bad_input, "invalid_command_line",
                     fmt::format("{}: is of runs; of a minimum there are derivatives alone", option));
@@ -141,8 +143,8 @@ int gradient_of_scene(const GradientOptions& options, const std::vector<AskGradi
     }
     if (options.draws.count > 0) throw GradientRefused("--draws are of errors: give --deviations or --covariance");
     const GradientSubject subject = more(plain);
-    GradientTable table =
-        differentiate(subject, rows_asked(options, subject), columns_asked(options, subject), options.check);
+    GradientTable table = differentiate(subject, rows_asked(options, subject), columns_asked(options, subject),
+                                        options.check, options.budget);
     add_notes(subject, table);
     const int code = report(options, table, table.failure);
     return code == 0 && !table.contradicted.empty() ? exit_failed : code;
@@ -231,6 +233,13 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
                  "with one of these: compare with so many runs from starts drawn at random")
       ->check(CLI::Range(2L, 10'000'000L));
   app.add_option("--seed", options.draws.seed, "of those draws")->needs("--draws");
+  app.add_option(
+         "--states", options.budget.states,
+         "go backward, with at most so many states kept on the way (default: forward or backward as is cheaper, "
+         "with 2 sqrt(steps))")
+      ->check(CLI::Range(1L, 1'000'000'000L))
+      ->excludes(deviations)
+      ->excludes(covariance);
   app.add_flag("--check", options.check,
                "compare with extrapolated differences of runs; ends with 3 where they contradict")
       ->excludes(deviations)

@@ -24,6 +24,8 @@ namespace lagroid::app {
 struct GradientName {
   std::string group;
   std::string name;
+  bool is_computed = false;   ///< of the state, of which it is no number of its own
+  bool only_by_name = false;  ///< not among all that there are
 };
 
 /// By what a start differs: along direction `index` of (displacement, momentum), or a parameter where there is a name.
@@ -50,7 +52,9 @@ enum class ThroughEvents { values_alone, parameters, start_too };
 struct GradientSubject {
   std::string system;
   long steps = 0;
-  std::vector<GradientName> observed;    ///< rows of what the motion observes at a node, in order
+  std::vector<GradientName> observed;  ///< rows of what the motion observes at a node, in order
+  /// What runs record beside these, and why it has no derivative.
+  std::vector<std::pair<GradientName, std::string>> unobserved = {};
   std::vector<GradientName> start;       ///< directions of the start, in order
   std::vector<GradientName> parameters;  ///< all that are numbers
   std::vector<double> sizes;             ///< of start and parameters, for differences

@@ -9,6 +9,7 @@
 #include "../scenes/simulation.hpp"
 #include "../scenes/system_module.hpp"
 #include "boundary/boundary_cost_of.hpp"
+#include "columns/observed_columns.hpp"
 #include "event_gradient.hpp"
 #include "gradient_subject.hpp"
 #include "motion_of_steps.hpp"
@@ -30,40 +31,6 @@
 namespace lagroid::app {
 
 namespace differentiating {
-
-template <class G> inline constexpr bool is_pair = false;
-template <int N> inline constexpr bool is_pair<Pair<N>> = true;
-
-inline void name_all(std::vector<GradientName>& out, const std::string& group, int count,
-                     const std::vector<std::string>& labels) {
-  for (int i = 0; i < count; ++i)
-    out.push_back({group, int(labels.size()) == count ? labels[std::size_t(i)] : group + "." + std::to_string(i)});
-}
-
-/// What is observed at a node, by name and by number: object, momentum and the configuration. On pairs that is where
-/// the motion began and the position, and left out.
-template <DiscreteSystem Sys> struct ObservedColumns {
-  using G = typename Sys::GroupoidType;
-  static constexpr int objects = G::object_coordinate_count();
-  static constexpr int arrows = is_pair<G> ? 0 : G::arrow_coordinate_count();
-
-  /// `timed`: with the time, which motions by such steps observe after the momentum.
-  std::vector<GradientName> names(const Presentation<Sys>& presentation, bool timed) const {
-    std::vector<GradientName> out;
-    name_all(out, is_pair<G> ? "position" : "object", objects, presentation.position);
-    name_all(out, "momentum", Sys::dimension, presentation.momentum);
-    if (timed) out.push_back({"time", "t"});
-    name_all(out, "configuration", arrows, {});
-    return out;
-  }
-  template <class Node> VariedVector operator()(const Node& node) const {
-    VariedVector out(objects + Sys::dimension + arrows);
-    out.head(objects) = node.system.groupoid.coordinates_of_object(node.object);
-    out.segment(objects, Sys::dimension) = node.momentum;
-    if constexpr (arrows > 0) out.tail(arrows) = node.system.groupoid.coordinates_of_arrow(node.configuration);
-    return out;
-  }
-};
 
 template <DiscreteSystem Sys> Started<Sys> nudged(Started<Sys> from, const std::vector<Nudge>& nudges) {
   using G = typename Sys::GroupoidType;
@@ -175,8 +142,9 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     out.notes.push_back("derivatives hold which steps have the size of the first, for want of a root");
   out.system = value.presentation.name;
   out.steps = value.extent.steps;
-  const differentiating::ObservedColumns<Sys> observe{};
-  out.observed = observe.names(value.presentation, value.choice.options.mode != TimeMode::fixed);
+  const differentiating::ObservedColumns<Sys> observe(value, system);
+  out.observed = observe.names(value.choice.options.mode != TimeMode::fixed);
+  out.unobserved = observe.without();
   // Of pairs the displacement is that of the position itself.
   constexpr bool on_pairs = differentiating::is_pair<G>;
   name_all(out.start, on_pairs ? "position" : "displacement", n,

@@ -63,7 +63,8 @@ std::string place_of(const std::string& row) { return row.substr(0, row.find('.'
 
 /// Whether a name is that of a number, of a group of it or of a vector with it; all have none.
 bool chooses(const std::string& name, const GradientName& each) {
-  return name.empty() || each.group == name || each.name == name || each.name.starts_with(name + ".");
+  if (name.empty()) return !each.only_by_name;
+  return each.group == name || each.name == name || each.name.starts_with(name + ".");
 }
 
 /// Those with a derivative of what a word chooses at a place; the others are left out, unless it chooses nothing else.
@@ -89,27 +90,41 @@ std::vector<int> chosen_with_derivatives(const GradientSubject& subject, const s
   return out;
 }
 
+/// In its own order.
+bool has_whole_start(const GradientSubject& subject, const GradientColumns& columns) {
+  for (std::size_t i = 0; i < columns.start.size(); ++i)
+    if (columns.start[i] != int(i)) return false;
+  return columns.start.size() == subject.start.size();
+}
+
 /// Functions at a place, by all columns, in the direction that costs less; and the growth of errors on the way there.
 struct AtPlace {
   Propagated found;
   double growth = 1;
 };
 AtPlace propagated(const GradientSubject& subject, const GradientColumns& columns, const RunGrowth& growth,
-                   const Observed& observed, std::size_t rows) {
+                   const Observed& observed, std::size_t rows, StateBudget budget) {
   const auto motion = subject.begin(names_of(subject, columns), {});
   const Eigen::MatrixXd asked = directions_of(subject, columns, {}, motion->states());
   const Eigen::MatrixXd along = growth.directions(motion->states(), columns.parameters);
   AtPlace out;
   Eigen::MatrixXd errors;
-  if (4 * rows >= std::size_t(asked.cols())) {
-    Eigen::MatrixXd directions(asked.rows(), asked.cols() + along.cols());
-    directions << asked, along;
+  if (budget.states == 0 && 4 * rows >= std::size_t(asked.cols())) {
+    // Errors of the start are combinations of its columns, where all are asked for.
+    const auto whole = Eigen::Index(subject.start.size());
+    const bool has_whole = has_whole_start(subject, columns);
+    Eigen::MatrixXd directions(asked.rows(), asked.cols() + (has_whole ? 0 : along.cols()));
+    directions << asked, along.leftCols(directions.cols() - asked.cols());
     out.found = propagate_forward(*motion, subject.steps, directions, observed);
     if (!out.found.converged()) return out;
-    errors = out.found.derivatives.rightCols(along.cols());
-    out.found.derivatives = out.found.derivatives.leftCols(asked.cols()).eval();
+    const Eigen::MatrixXd& found = out.found.derivatives;
+    if (has_whole)
+      errors = found.leftCols(whole) * growth.along();
+    else
+      errors = found.rightCols(along.cols());
+    out.found.derivatives = found.leftCols(asked.cols()).eval();
   } else {
-    out.found = propagate_backward(*motion, subject.steps, observed);
+    out.found = propagate_backward(*motion, subject.steps, observed, budget);
     if (!out.found.converged()) return out;
     errors = out.found.derivatives * along;
     out.found.derivatives = (out.found.derivatives * asked).eval();
@@ -153,9 +168,11 @@ std::string kind_of_reason(std::string why, const std::string& number) {
 
 std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::string& word, const std::string& name) {
   std::vector<int> out;
+  // Its own name comes before that of a group.
+  const bool is_one = std::any_of(all.begin(), all.end(), [&](const GradientName& each) { return each.name == name; });
   for (int i = 0; i < int(all.size()); ++i) {
     const GradientName& each = all[std::size_t(i)];
-    if (chooses(name, each)) out.push_back(i);
+    if (is_one ? each.name == name : chooses(name, each)) out.push_back(i);
   }
   if (!out.empty()) return out;
   std::vector<std::string> names;
@@ -164,6 +181,14 @@ std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::s
       if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
   throw GradientRefused(
       fmt::format("{}: nothing of that name is differentiable here; there are {}", word, fmt::join(names, ", ")));
+}
+
+std::vector<int> chosen_rows(const GradientSubject& subject, const std::string& word, const std::string& name) {
+  const auto is_asked = [&](const GradientName& each) { return chooses(name, each); };
+  if (std::none_of(subject.observed.begin(), subject.observed.end(), is_asked))
+    for (const auto& [each, why] : subject.unobserved)
+      if (is_asked(each)) throw GradientRefused(fmt::format("{}: no derivative of {}: {}", word, each.name, why));
+  return chosen_names(subject.observed, word, name);
 }
 
 std::vector<std::string> names_of(const GradientSubject& subject, const GradientColumns& columns) {
@@ -204,8 +229,7 @@ GradientTable table_of(const GradientSubject& subject, const std::vector<std::st
   return out;
 }
 
-/// Of sixteen.
-static double digits_left_by(double growth) {
+double digits_left_by(double growth) {
   Propagated propagated;
   propagated.growth = growth;
   return propagated.digits_left();
@@ -304,7 +328,9 @@ std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const G
 }
 
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
-                            const std::vector<std::string>& by, bool check) {
+                            const std::vector<std::string>& by, bool check, StateBudget budget) {
+  if (budget.states > 0 && (subject.through_events || subject.cost))
+    throw GradientRefused("--states: there is no way back through events, and none of a boundary value");
   if (subject.through_events) return differentiate_through_events(subject, of, by, check);
   if (subject.cost) return differentiate_cost(subject, of, by, check);
   GradientTable out = table_of(subject, by, check);
@@ -312,7 +338,7 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
   std::vector<std::pair<std::string, std::vector<int>>> places;
   for (const std::string& word : of) {
     const Asked asked = row_of(word, subject.steps);
-    const std::vector<int> rows = chosen_names(subject.observed, word, asked.name);
+    const std::vector<int> rows = chosen_rows(subject, word, asked.name);
     auto place =
         std::find_if(places.begin(), places.end(), [&](const auto& each) { return each.first == asked.place; });
     if (place == places.end()) place = places.insert(places.end(), {asked.place, {}});
@@ -327,7 +353,7 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
   out.derivatives.resize(Eigen::Index(count), width);
   const RunGrowth growth(subject, sizes_of_run(subject));
   for (const auto& [place, rows] : places) {
-    const auto [found, grew] = propagated(subject, columns, growth, observed_at(place), rows.size());
+    const auto [found, grew] = propagated(subject, columns, growth, observed_at(place), rows.size(), budget);
     out.steps_solved += found.steps_solved;
     out.states_kept = std::max(out.states_kept, found.states_kept);
     if (!found.converged()) {
@@ -351,131 +377,6 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
                              [&](const std::vector<Nudge>& nudges) { return values_of(subject, out, nudges); },
                              {.sizes = growth.sizes(), .growth = out.growth, .tolerance = subject.tolerance});
   return out;
-}
-
-std::string words_of_growth(const GradientTable& table) {
-  std::string out = "\n";
-  if (!table.of_boundary_value)
-    out +=
-        fmt::format("  errors grow {:.3g} times on the way: of {} {:.1f} are left\n", table.growth,
-                    table.digits_left < digits_left_by(table.growth) ? "the digits of the tolerance" : "sixteen digits",
-                    table.digits_left);
-  for (const std::string& note : table.notes) out += fmt::format("  note: {}\n", note);
-  return out;
-}
-
-/// The first few of many.
-static std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t few = 5;
-  const std::vector<std::string> first(names.begin(), names.begin() + std::ptrdiff_t(std::min(few, names.size())));
-  const std::size_t more = names.size() - first.size();
-  return fmt::format("{}{}", fmt::join(first, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
-}
-
-std::string words_of_differences(const GradientTable& table, const std::string& what) {
-  std::string out;
-  const std::size_t all = table.rows.size() * table.columns.size();
-  if (table.untold.size() < all)
-    out += table.within_rounding
-               ? fmt::format(
-                     "  extrapolated differences of {} agree as far as they tell: their rounding leaves {:.1f} "
-                     "digits\n",
-                     what, table.digits_agreed)
-               : fmt::format("  extrapolated differences of {} agree to {:.1f} digits\n", what, table.digits_agreed);
-  if (!table.contradicted.empty())
-    out += fmt::format("  they contradict {} of {} derivatives: {}\n", table.contradicted.size(), all,
-                       some_of(table.contradicted));
-  if (!table.untold.empty())
-    out += fmt::format("  differences of {0} cannot tell, by their rounding or where {0} are far apart: {1}\n", what,
-                       some_of(table.untold));
-  return out;
-}
-
-/// Of one function by many numbers, a line for each of these.
-static std::string lines_of_row(const GradientTable& table) {
-  std::size_t first = 0;
-  for (const std::string& column : table.columns) first = std::max(first, column.size() + 3);
-  std::string out = fmt::format("  {:{}}  {:>18}\n", "", first, table.rows.front());
-  out += fmt::format("  {:{}}  {:18.10g}\n", "value", first, table.values(0));
-  for (std::size_t j = 0; j < table.columns.size(); ++j)
-    out += fmt::format("  {:{}}  {:18.10g}\n", "by " + table.columns[j], first, table.derivatives(0, Eigen::Index(j)));
-  return out;
-}
-
-static std::string lines_of_rows(const GradientTable& table) {
-  std::size_t first = 0;
-  for (const std::string& row : table.rows) first = std::max(first, row.size());
-  std::string out = fmt::format("  {:{}}  {:>18}", "", first, "value");
-  std::vector<std::size_t> widths;
-  for (const std::string& column : table.columns) {
-    widths.push_back(std::max<std::size_t>(18, column.size() + 3));
-    out += fmt::format("  {:>{}}", "by " + column, widths.back());
-  }
-  out += "\n";
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const auto row = Eigen::Index(i);
-    out += fmt::format("  {:{}}  {:18.10g}", table.rows[i], first, table.values(row));
-    for (std::size_t j = 0; j < widths.size(); ++j)
-      out += fmt::format("  {:{}.10g}", table.derivatives(row, Eigen::Index(j)), widths[j]);
-    out += "\n";
-  }
-  return out;
-}
-
-std::string lines_of(const GradientTable& table) {
-  constexpr std::size_t many = 6;
-  return table.rows.size() == 1 && table.columns.size() > many ? lines_of_row(table) : lines_of_rows(table);
-}
-
-std::string text_of(const GradientTable& table) {
-  std::string out = fmt::format("{}: exact derivatives of {} {} steps\n\n", table.system,
-                                table.of_boundary_value ? "the cost of a path of" : "a run of", table.steps);
-  out += lines_of(table);
-  out += words_of_growth(table);
-  if (table.checked) out += words_of_differences(table, "runs");
-  return out;
-}
-
-/// Of a matrix, row by row.
-static nlohmann::ordered_json json_rows(const Eigen::MatrixXd& a) {
-  using OrderedJson = nlohmann::ordered_json;
-  OrderedJson rows = OrderedJson::array();
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    OrderedJson row = OrderedJson::array();
-    for (Eigen::Index j = 0; j < a.cols(); ++j) row.push_back(a(i, j));
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-void add_derivatives(const GradientTable& table, nlohmann::ordered_json& out) {
-  out["values"] = std::vector<double>(table.values.data(), table.values.data() + table.values.size());
-  out["derivatives"] = json_rows(table.derivatives);
-}
-
-void add_notes_and_check(const GradientTable& table, nlohmann::ordered_json& out) {
-  if (!table.notes.empty()) out["notes"] = table.notes;
-  if (!table.checked) return;
-  out["differences"] = json_rows(table.differences);
-  out["digits_agreed"] = table.digits_agreed;
-  out["within_rounding"] = table.within_rounding;
-  out["contradicted"] = table.contradicted;
-  out["untold"] = table.untold;
-}
-
-std::string json_of(const GradientTable& table) {
-  nlohmann::ordered_json out = {
-      {"system", table.system},   {"steps", table.steps}, {"status", table.failure.empty() ? "converged" : "failed"},
-      {"message", table.failure}, {"of", table.rows},     {"by", table.columns}};
-  if (table.failure.empty()) {
-    add_derivatives(table, out);
-    out["growth"] = table.growth;
-    out["digits_left"] = table.digits_left;
-    out["steps_solved"] = table.steps_solved;
-    out["states_kept"] = table.states_kept;
-    add_notes_and_check(table, out);
-  }
-  return out.dump(2);
 }
 
 }  // namespace lagroid::app

@@ -8,6 +8,8 @@
 
 #include "gradient_subject.hpp"
 
+#include <lagroid/solvers/sensitivity/propagate.hpp>
+
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -69,17 +71,22 @@ Eigen::MatrixXd directions_of(const GradientSubject& subject, const GradientColu
                               const std::vector<Nudge>& nudges, Eigen::Index states);
 /// What `name` chooses: all, those of a group, or one.
 std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::string& word, const std::string& name);
+/// The same of what is observed; throws GradientRefused, with the reason, for what has no derivative.
+std::vector<int> chosen_rows(const GradientSubject& subject, const std::string& word, const std::string& name);
 
 /// A table with its columns, still without rows.
 GradientTable table_of(const GradientSubject& subject, const std::vector<std::string>& by, bool check);
 void set_growth(GradientTable& table, double growth);
+/// Of sixteen.
+double digits_left_by(double growth);
 
 /// The rows of the table, one after another, of a run from a start that differs; none where it ended early.
 std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
                                          const std::vector<Nudge>& nudges);
 
+/// With a budget the way is back, whatever is cheaper; GradientRefused where there is no such way.
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,
-                            const std::vector<std::string>& by, bool check);
+                            const std::vector<std::string>& by, bool check, StateBudget budget = {});
 
 /// By how much derivatives grew, and the notes: the end of what is printed of them.
 std::string words_of_growth(const GradientTable& table);

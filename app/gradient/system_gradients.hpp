@@ -8,13 +8,14 @@
 #include "../reading/scene_reader.hpp"
 #include "gradient_subject.hpp"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
 namespace lagroid::app {
 
 /// Of a scene of its system; nothing where that is another system. Throws SceneError.
-using AskGradient = std::optional<GradientSubject> (*)(const Section& scene);
+using AskGradient = std::function<std::optional<GradientSubject>(const Section& scene)>;
 
 /// Of a scene of the library's Poisson systems, without events (SceneError).
 std::optional<GradientSubject> poisson_gradient(const Section& scene);

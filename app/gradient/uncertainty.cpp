@@ -235,6 +235,11 @@ Uncertainty uncertainty_of(const GradientSubject& subject, const std::vector<std
   if (out.table.columns != errors.names)
     throw GradientRefused("errors of starts come first, and then those of parameters, each once");
   out.covariance = out.table.derivatives * errors.covariance * out.table.derivatives.transpose();
+  if (!out.covariance.allFinite()) {
+    out.table.failure =
+        "the covariance is no finite number: deviations, or derivatives, are too large for their squares";
+    return out;
+  }
   if (draws.count > 0) out.sample = sample(subject, out.table, errors, draws);
   return out;
 }

@@ -49,12 +49,14 @@ int main(int argc, char** argv) {
   CLI::App app{"which part of lagroid a command line needs"};
   SceneOptions options;
   options.json = asks_for_json(argc, argv);
-  std::string out;
+  std::string out, ignored_word;
   const auto with_scene = [&](const char* name, const char* file) {
     CLI::App* command = app.add_subcommand(name, "");
     command->add_option(file, options.scene);
     command->add_option("--set", options.overrides)->allow_extra_args(false);
     command->add_option("--out", out);
+    command->add_option("--covariance", ignored_word);
+    command->add_option("--deviations", ignored_word);
     command->allow_extras();
     command->set_help_flag();
     return command;

@@ -44,7 +44,7 @@ inline std::array<double, 4> quaternion_of(const Matrix<double, 3, 3>& rotation)
 ///     static KeyOf<...> declared(key)                          what may stand there
 ///     Arrow read(section, key) const                           the arrow that the key gives, or that is there without
 ///     Arrow between(start, end) const                          from the node where one ends to that of the other
-///     coordinates(arrow, object) const                         numbers of the node for reports, attitudes apart
+///     coordinates<S>(arrow, object) const                      numbers of the node for reports, attitudes apart
 ///     labels(key)                                              their names
 ///     attitude(arrow) const                                    a rotation in space, where there is one
 ///
@@ -76,7 +76,7 @@ template <class G> struct ArrowFormat {
     for (int i = 1; i <= G::arrow_coordinate_count(); ++i) out.push_back(fmt::format("g{}", i));
     return out;
   }
-  std::vector<double> coordinates(const ArrowOf<G>& arrow, const ObjectOf<G>&) const {
+  template <class S = double> std::vector<S> coordinates(const ArrowOf<G, S>& arrow, const ObjectOf<G, S>&) const {
     const auto x = groupoid.coordinates_of_arrow(arrow);
     return {x.data(), x.data() + x.size()};
   }
@@ -105,7 +105,7 @@ template <int N> struct ArrowFormat<Pair<N>> {
     for (int i = 1; i <= N; ++i) out.push_back(fmt::format("{}{}", head, i));
     return out;
   }
-  static std::vector<double> coordinates(const PairArrow<double, N>&, const Vector<double, N>& q) {
+  template <class S = double> static std::vector<S> coordinates(const PairArrow<S, N>&, const Vector<S, N>& q) {
     return {q.data(), q.data() + N};
   }
   static std::optional<std::array<double, 4>> attitude(const PairArrow<double, N>&) { return std::nullopt; }
@@ -128,7 +128,9 @@ template <> struct ArrowFormat<SO3> {
     return SO3::project(Matrix<double, 3, 3>(start.transpose() * end));
   }
   static std::vector<std::string> labels(std::string_view) { return {}; }
-  static std::vector<double> coordinates(const Matrix<double, 3, 3>&, const Vector<double, 0>&) { return {}; }
+  template <class S = double> static std::vector<S> coordinates(const Matrix<S, 3, 3>&, const Vector<S, 0>&) {
+    return {};
+  }
   static std::optional<std::array<double, 4>> attitude(const Matrix<double, 3, 3>& a) { return quaternion_of(a); }
 };
 
@@ -145,7 +147,7 @@ template <> struct ArrowFormat<SO2> {
     return SO2::project(Matrix<double, 2, 2>(start.transpose() * end));
   }
   static std::vector<std::string> labels(std::string_view name) { return {std::string(name)}; }
-  static std::vector<double> coordinates(const Matrix<double, 2, 2>& a, const Vector<double, 0>&) {
+  template <class S = double> static std::vector<S> coordinates(const Matrix<S, 2, 2>& a, const Vector<S, 0>&) {
     return {SO2::log(a)(0)};
   }
   static std::optional<std::array<double, 4>> attitude(const Matrix<double, 2, 2>&) { return std::nullopt; }
@@ -168,8 +170,9 @@ template <> struct ArrowFormat<SE2> {
     if (name == key) return {"x", "y", "heading"};
     return {fmt::format("{}_x", name), fmt::format("{}_y", name), fmt::format("{}_heading", name)};
   }
-  static std::vector<double> coordinates(const Matrix<double, 3, 3>& pose, const Vector<double, 0>&) {
-    return {pose(0, 2), pose(1, 2), std::atan2(pose(1, 0), pose(0, 0))};
+  template <class S = double> static std::vector<S> coordinates(const Matrix<S, 3, 3>& pose, const Vector<S, 0>&) {
+    using std::atan2;
+    return {pose(0, 2), pose(1, 2), atan2(pose(1, 0), pose(0, 0))};
   }
   static std::optional<std::array<double, 4>> attitude(const Matrix<double, 3, 3>&) { return std::nullopt; }
 };
@@ -187,7 +190,7 @@ template <int N> struct ArrowFormat<VectorGroup<N>> {
   }
   static Vector<double, N> between(const Vector<double, N>& start, const Vector<double, N>& end) { return end - start; }
   static std::vector<std::string> labels(std::string_view name) { return ArrowFormat<Pair<N>>::labels(name); }
-  static std::vector<double> coordinates(const Vector<double, N>& x, const Vector<double, 0>&) {
+  template <class S = double> static std::vector<S> coordinates(const Vector<S, N>& x, const Vector<S, 0>&) {
     return {x.data(), x.data() + N};
   }
   static std::optional<std::array<double, 4>> attitude(const Vector<double, N>&) { return std::nullopt; }
@@ -236,9 +239,10 @@ template <class... Gs> struct ArrowFormat<Product<Gs...>> {
   std::vector<std::string> labels(std::string_view) const {
     return joined<std::string>([&]<std::size_t I>(const auto& of, const std::string& name) { return of.labels(name); });
   }
-  std::vector<double> coordinates(const Arrow& arrow, const ObjectOf<Product<Gs...>>& q) const {
-    return joined<double>([&]<std::size_t I>(const auto& of, const std::string&) {
-      return of.coordinates(std::get<I>(arrow), std::get<I>(q));
+  template <class S = double>
+  std::vector<S> coordinates(const ArrowOf<Product<Gs...>, S>& arrow, const ObjectOf<Product<Gs...>, S>& q) const {
+    return joined<S>([&]<std::size_t I>(const auto& of, const std::string&) {
+      return of.template coordinates<S>(std::get<I>(arrow), std::get<I>(q));
     });
   }
   std::optional<std::array<double, 4>> attitude(const Arrow& arrow) const {

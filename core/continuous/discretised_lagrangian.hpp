@@ -15,6 +15,7 @@
 /// mu = dl/dxi has no solution that Newton's method finds from rest, as where l is degenerate; the energy is one then,
 /// and the first guess the unit arrow. Nothing throws.
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/continuous/continuous_lagrangian.hpp>
 #include <lagroid/core/derivatives/implicit.hpp>
 #include <lagroid/core/noether.hpp>
@@ -121,6 +122,30 @@ struct DiscretisedLagrangian : System<Derived, typename L::GroupoidType, L::arro
     if constexpr (HasHamiltonian<L>) return this->hamiltonian(s.object, s.momentum);
     const auto [xi, lambda] = velocity_of(continuous(), this->groupoid, s);
     return s.momentum.dot(xi) - this->l(s.object, xi);
+  }
+
+  static std::vector<ObservedName> observed_names() { return {{"E", "energy"}}; }
+  /// The energy is the extremal value of <mu, xi> - l(q, xi) - <lambda, psi(q, xi)>: its first derivatives are those of
+  /// this expression where xi and lambda stay (envelope theorem).
+  template <class S> Vector<S, 1> observed(const State<GroupoidType, S>& s, const Arrow<S>& /*configuration*/) const {
+    if constexpr (HasHamiltonian<L>) {
+      return Vector<S, 1>(this->hamiltonian(s.object, s.momentum));
+    } else {
+      State<GroupoidType> plain;
+      const auto place = this->groupoid.coordinates_of_object(s.object);
+      Vector<double, GroupoidType::object_coordinate_count()> numbers;
+      for (int i = 0; i < numbers.size(); ++i) numbers(i) = value_of(place(i));
+      plain.object = this->groupoid.template object_at<double>(numbers);
+      for (int i = 0; i < n; ++i) plain.momentum(i) = value_of(s.momentum(i));
+      const auto [velocity, lambda] = velocity_of(continuous(), this->groupoid, plain);
+      const auto xi = with_entries_of<Vector<S, n>>(velocity);
+      S energy = s.momentum.dot(xi) - this->l(s.object, xi);
+      if constexpr (arrow_constraints > 0) {
+        const Vector<S, arrow_constraints> psi = this->psi(s.object, xi);
+        for (int i = 0; i < arrow_constraints; ++i) energy -= psi(i) * lambda(i);
+      }
+      return Vector<S, 1>(energy);
+    }
   }
 
   /// tau(q, h xi), exact to second order in h; the unit arrow where there is no such xi.

@@ -11,6 +11,12 @@ root = pathlib.Path(__file__).resolve().parents[2]
 
 # Scenes by subject, with the settings that keep a picture small; `a_program` of examples/ instead of a scene.
 a_program = None
+
+
+class Fitted(list):
+    """Words of `lagroid fit` after the scene, in place of settings."""
+
+
 gallery = {
     "The cheapest way": {
         "plate_ball": [], "unicycle": [], "attitude_control": [], "kepler_boundary": []},
@@ -34,6 +40,9 @@ gallery = {
         "two_ways_to_roll": ["output.every=4"], "steering": ["output.every=4"]},
     "Many bodies": {
         "chain_drop": ["output.every=30"], "six_bar": ["output.every=30"], "rolling_balls": ["output.every=18"]},
+    "Parameters from data": {
+        "damped_pendulum": Fitted(["examples/measured_pendulum.csv", "--wrt", "initial,parameters.length,parameters.damping",
+                                   "--sigma", "q=0.01"])},
 }
 
 
@@ -41,8 +50,8 @@ def source(name, settings):
     return f"examples/{name}.{'cpp' if settings is a_program else 'toml'}"
 
 
-def picture(name):
-    return name.replace("/", "_") + ".svg"
+def picture(name, settings=()):
+    return ("fit_" if isinstance(settings, Fitted) else "") + name.replace("/", "_") + ".svg"
 
 
 def caption(file):
@@ -63,6 +72,8 @@ def command(name, settings, folder):
     """The words that draw a picture into the folder."""
     if settings is a_program:
         return [f"build/release/bin/{name}", folder]
+    if isinstance(settings, Fitted):
+        return ["./lagroid", "fit", source(name, settings), *settings, "--out", folder]
     changed = (word for setting in settings for word in ("--set", setting))
     verb = "control" if name.startswith("control/") else "run"
     return ["./lagroid", verb, source(name, settings), *changed, "--out", folder]
@@ -82,7 +93,7 @@ def page():
             lines += ["", f"### {title}", "", caption(root / file),
                       f"([{'program' if settings is a_program else 'scene'}](../{file}))", "",
                       f"    {' '.join(command(name, settings, f'out/gallery/{name}'))}", "",
-                      f"![{name}](gallery/{picture(name)})"]
+                      f"![{name}](gallery/{picture(name, settings)})"]
     return "\n".join(lines) + "\n"
 
 
@@ -91,10 +102,12 @@ def draw(program, name, settings, pictures):
     with tempfile.TemporaryDirectory() as folder:
         _, *arguments = words = command(name, settings, folder)
         runs = program.parent / name if settings is a_program else program
+        if isinstance(settings, Fitted):
+            runs = program.parent / "parts" / name / "lagroid-gradient"
         done = subprocess.run([runs, *arguments], cwd=root, capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"gallery: {' '.join(words)}: {done.stderr.strip()}")
-        shutil.copy(pathlib.Path(folder) / "plot.svg", pictures / picture(name))
+        shutil.copy(pathlib.Path(folder) / "plot.svg", pictures / picture(name, settings))
 
 
 def main():

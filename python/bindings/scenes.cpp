@@ -319,8 +319,10 @@ void bind_scenes(py::module_& module) {
       .def_readonly("curves", &lagroid::Panel::curves, "Columns.")
       .def_readonly("equal_axes", &lagroid::Panel::equal_axes, "Whether both have one scale.");
 
+  // With attributes of Python's: which scene it is of (lagroid/scenes.py).
   py::class_<RunResult, std::shared_ptr<RunResult>>(
-      module, "RunResult", "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
+      module, "RunResult", py::dynamic_attr(),
+      "A run: run[column] is an array over the run's own numbers, read-only and not copied.")
       .def_readonly("system", &RunResult::system, "Its name.")
       .def_readonly("method", &RunResult::method, "Of an initial value, and what it declares of itself.")
       .def_readonly("status", &RunResult::status, "converged, interrupted or why not.")
@@ -397,6 +399,12 @@ void bind_scenes(py::module_& module) {
           "Whether there is such a column or series.")
       .def_property_readonly("converged", &RunResult::converged, "Whether all was solved.")
       .def_property_readonly("interrupted", &RunResult::interrupted, "Whether Ctrl-C or SIGTERM ended it.")
+      .def(
+          "gradient",
+          [](const py::object& self, const py::kwargs& asked) {
+            return py::module_::import("lagroid.studies").attr("gradient_of_run")(self, **asked);
+          },
+          "Exact derivatives of the run: of, wrt, columns, check and states as lagroid.gradient takes them.")
       .def("text", lagroid::text_report, "The report, as lagroid run prints it.")
       .def("json", lagroid::json_report, "The summary, as lagroid run --json prints it.")
       .def(

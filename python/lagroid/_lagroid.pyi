@@ -1,11 +1,13 @@
 """What is compiled."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Optional, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from .studies import GradientTable
 
 _Array = NDArray[np.float64]
 _Path = str | os.PathLike[str]
@@ -116,6 +118,7 @@ class Panel:
 
 @final
 class RunResult:
+    _of: tuple[Any, Mapping[str, Any]]
     @property
     def system(self) -> str: ...
     @property
@@ -176,6 +179,15 @@ class RunResult:
     def converged(self) -> bool: ...
     @property
     def interrupted(self) -> bool: ...
+    def gradient(
+        self,
+        *,
+        of: str | Sequence[str] = ...,
+        wrt: str | Sequence[str] = ...,
+        columns: Optional[Mapping[str, str]] = ...,
+        check: bool = ...,
+        states: int = ...,
+    ) -> GradientTable: ...
     def text(self) -> str: ...
     def json(self) -> str: ...
     def write(self, folder: _Path) -> list[os.PathLike[str]]: ...

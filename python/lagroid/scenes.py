@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -99,7 +100,13 @@ def run(
     tables = [event for event in events or [] if not (callable(event.get("when")) or "call" in event)]
     named = {"reduce": reduce, "event": tables if tables else None}
     given = {**(set or {}), **{key: value for key, value in named.items() if value is not None}}
-    return _finished(_lagroid.run(made(scene, given), record, out, called))
+    asked = made(scene, given)
+    result = _lagroid.run(asked, record, out, called)
+    if not called:  # functions of Python's are in no scene
+        # A file itself, as what it names stands beside it; any other as it was set.
+        of_file = isinstance(scene, (str, os.PathLike)) and is_file(scene)
+        result._of = (os.path.abspath(scene), copy.deepcopy(given)) if of_file else (asked.toml(), {})
+    return _finished(result)
 
 
 def resume(folder: str | os.PathLike[str], *, steps: Optional[int] = None, other_build: bool = False) -> RunResult:

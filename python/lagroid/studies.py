@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _lagroid
+from ._lagroid import RunResult
 from .errors import SolveError
 from .programs import output_of, program
 from .scenes import SceneLike, is_file, made, settings
@@ -84,6 +85,8 @@ class GradientTable(NamedTuple):
     digits_agreed: Optional[float]
     notes: list[str]
     contradicted: Sequence[str] = ()  # by differences, as "final.q by parameters.length"
+    steps_solved: int = 0  # in all, those computed again on the way back too
+    states_kept: int = 0  # at most, at a time, on the way back
 
 
 def gradient(
@@ -94,15 +97,17 @@ def gradient(
     columns: Optional[Mapping[str, str]] = None,
     set: Optional[Mapping[str, Any]] = None,
     check: bool = False,
+    states: int = 0,
 ) -> GradientTable:
     """The derivatives of a scene's run by its start and its parameters, exact, by the program lagroid-gradient
     (docs/gradients.md): `of` what, as "final.position", "node.10.px", "integral.x" or, through the scene's events,
     "event.floor.1.t", and `wrt` what, as "initial.momentum" or "parameters.strength". `columns`: more columns of the run,
     as {"w1": "M1 / parameters.inertia.0"}. `check` compares with extrapolated differences of runs, and names
-    what they contradict. Raises
+    what they contradict. With `states` the way is back, and keeps at most so many of them. Raises
     ProgramError where the program is missing, SceneError where it refuses, SolveError where a step of the run fails."""
     arguments = ["--of", listed(of), "--wrt", listed(wrt), *repeated("--column", columns)]
     arguments += ["--check"] if check else []
+    arguments += ["--states", str(states)] if states else []
     found = told_by("gradient", scene, set, arguments)
     if found.get("status") == "failed":
         raise SolveError(found["message"])
@@ -118,7 +123,19 @@ def gradient(
         found.get("digits_agreed"),
         found.get("notes", []),
         found.get("contradicted", []),
+        found.get("steps_solved", 0),
+        found.get("states_kept", 0),
     )
+
+
+def gradient_of_run(run: RunResult, **asked: Any) -> GradientTable:
+    """`RunResult.gradient`: of the scene that was run, as it was set; a file is read again."""
+    if not hasattr(run, "_of"):
+        raise ValueError(
+            "a run that was resumed, or has events of Python's, does not hold its scene: ask lagroid.gradient(scene)"
+        )
+    scene, given = run._of
+    return gradient(scene, set=given, **asked)
 
 
 class Uncertainty(NamedTuple):

@@ -102,6 +102,24 @@ class Studies(unittest.TestCase):
         self.assertEqual(found.by[1], "parameters.strength")
         self.assertIsNone(found.differences)
 
+    def test_a_run_has_the_gradient_of_its_scene(self) -> None:
+        script = (
+            'grep -q "strength = 2" "$1" || echo "$*" | grep -q "parameters.strength=2.0" || exit 1\n'
+            '[ "$2 $3 $4" = "--json --of final.energy" ] || exit 1\n'
+            'echo \'{"of": ["final.energy"], "by": ["initial.x"], "values": [1.5], "derivatives": [[2]], "growth": 4,'
+            ' "digits_left": 15, "steps_solved": 20}\'\n'
+        )
+        few = {"time.steps": 3, "parameters.strength": 2.0}
+        file = EXAMPLES / "kepler.toml"
+        for scene in (file, file.read_text()):
+            run = lagroid.run(scene, set=few)
+            with stand_in("LAGROID_GRADIENT", script):
+                found = run.gradient(of="final.energy")
+            self.assertEqual((found.derivatives.tolist(), found.steps_solved), ([[2]], 20))
+        watched = lagroid.run(file, set=few, events=[{"name": "here", "when": lambda node: node["x"]}])
+        with self.assertRaisesRegex(ValueError, "does not hold its scene"):
+            watched.gradient()
+
     def test_uncertainty_hands_over_to_the_same_program(self) -> None:
         script = (
             '[ "$*" = "$1 --json --of final.x --deviations initial.momentum=0.01 --draws 10 --seed 3" ] || exit 1\n'

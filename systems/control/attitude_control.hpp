@@ -56,6 +56,18 @@ struct AttitudeControl : GroupControl<AttitudeControl, SO3, /*constraints*/ 1> {
   /// Turning about the forbidden axis, where it is one: M.n is conserved.
   std::vector<Symmetry<AttitudeControl>> symmetries() const;
   std::vector<Quantity<AttitudeControl>> quantities() const;
+  static std::vector<ObservedName> observed_names() {
+    std::vector<ObservedName> all = GroupControl::observed_names();
+    all.push_back({"axial", "axial momentum M.n"});
+    return all;
+  }
+  template <class S> Vector<S, Eigen::Dynamic> observed(const State<SO3, S>& s, const Matrix<S, 3, 3>& attitude) const {
+    const Vector<S, Eigen::Dynamic> first = GroupControl::observed(s, attitude);
+    const auto& axis = varied<S>(forbidden);
+    Vector<S, Eigen::Dynamic> out(first.size() + 1);
+    out << first, s.momentum(0) * axis(0) + s.momentum(1) * axis(1) + s.momentum(2) * axis(2);
+    return out;
+  }
 };
 
 LAGROID_STEPS(extern template, AttitudeControl);

@@ -14,6 +14,7 @@
 /// Requires l and, if there are constraints, psi over any scalar. `energy` and `reference` require `control`, the
 /// inverse of the Legendre transform. [G] 6.1
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/core/scalars/varied.hpp>
@@ -145,6 +146,33 @@ template <class Derived, class G, int Constraints = 0> class GroupControl : publ
          },
          [to_space](const Point& p) { return (to_space(p).cwiseAbs() * p.state.momentum.cwiseAbs()).norm(); }});
     return all;
+  }
+
+  static std::vector<ObservedName> observed_names() {
+    std::vector<ObservedName> all;
+    if constexpr (HasControl<Derived>) all.push_back({"H", "energy"});
+    for (int i = 1; i <= dimension; ++i) all.push_back({"spatial momentum", "J" + std::to_string(i)});
+    return all;
+  }
+  /// The energy is the extremal value of <mu, xi> - l(xi) - <lambda, psi(xi)>: with xi and lambda at hand its first
+  /// derivatives are those of this expression where they stay (envelope theorem).
+  template <class S> Vector<S, Eigen::Dynamic> observed(const State<G, S>& s, const Element<S>& configuration) const {
+    constexpr int energies = HasControl<Derived> ? 1 : 0;
+    Vector<S, Eigen::Dynamic> out(energies + dimension);
+    if constexpr (HasControl<Derived>) {
+      Algebra<double> mu;
+      for (int i = 0; i < dimension; ++i) mu(i) = value_of(s.momentum(i));
+      const auto [velocity, multipliers] = self().control(mu);
+      const auto xi = with_entries_of<Algebra<S>>(velocity);
+      out(0) = s.momentum.dot(xi) - self().l(xi);
+      if constexpr (Constraints > 0) {
+        const Vector<S, Constraints> psi = self().psi(xi);
+        for (int i = 0; i < Constraints; ++i) out(0) -= psi(i) * multipliers(i);
+      }
+    }
+    const Matrix<S, dimension, dimension> to_body = G::adjoint(G::inverse(configuration));
+    out.template tail<dimension>() = to_body.transpose() * s.momentum;
+    return out;
   }
 
  private:

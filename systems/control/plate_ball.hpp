@@ -11,6 +11,7 @@
 ///
 /// Requires a positive radius; `infeasible` has the reason where parameters admit no motion. [G] 6.2, (8)
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
@@ -150,6 +151,20 @@ struct PlateBall : System<PlateBall, Product<Pair<2>, SO3>, /*arrow constraints*
   /// Turning the table and all on it about its centre; with the plate at rest, moving them.
   std::vector<Symmetry<PlateBall>> symmetries() const;
   std::vector<Quantity<PlateBall>> quantities() const;
+  static std::vector<ObservedName> observed_names() {
+    return {{"spatial momentum A M", "(AM)1"},
+            {"spatial momentum A M", "(AM)2"},
+            {"spatial momentum A M", "(AM)3"},
+            {"J", "J = x py - y px - M3"}};
+  }
+  template <class S> Vector<S, 4> observed(const State<GroupoidType, S>& s, const Arrow<S>& configuration) const {
+    const Vector<S, 2>& q = std::get<0>(s.object);
+    const auto& mu = s.momentum;
+    const Vector<S, 3> spatial = std::get<1>(configuration) * mu.template tail<3>();
+    Vector<S, 4> out;
+    out << spatial, q(0) * mu(1) - q(1) * mu(0) - mu(4);
+    return out;
+  }
   static auto reductions() {
     return std::tuple(reduction("translations", ProductMorphism<Difference<2>, IdentityMorphism<SO3>>{},
                                 "translations, where the plate is at rest"),

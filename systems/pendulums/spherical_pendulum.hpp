@@ -10,6 +10,7 @@
 ///
 /// Requires a start with |q| = l.
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/scalars/special_functions.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -109,6 +110,11 @@ struct SphericalPendulum : MechanicalSystem<SphericalPendulum, 3, /*object const
   std::vector<Symmetry<SphericalPendulum>> symmetries() const {
     return {
         {"vertical angular momentum", [](const Vector<double, 3>& q) { return Vector<double, 3>(-q(1), q(0), 0); }}};
+  }
+  static std::vector<ObservedName> observed_names() { return {{"H", "energy"}, {"Lz", "vertical angular momentum"}}; }
+  template <class S> Vector<S, 2> observed(const State<Pair<3>, S>& s, const PairArrow<S, 3>& /*configuration*/) const {
+    const auto& [q, p] = s;
+    return {kinetic_energy(p) + potential_energy(q), q(0) * p(1) - q(1) * p(0)};
   }
   std::vector<Quantity<SphericalPendulum>> quantities() const {
     // Near the vertical the bob moves little: its momentum is rounded relative to the rod all the same.

@@ -13,6 +13,7 @@
 /// Mechanics and Control, chapter 1.)
 
 #include <lagroid/core/capabilities/balance.hpp>
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/groupoids/groups/se2.hpp>
 #include <lagroid/systems/control/group_control.hpp>
 #include <lagroid/systems/instances.hpp>
@@ -95,6 +96,16 @@ struct ChaplyginSleigh : GroupControl<ChaplyginSleigh, SE2, /*constraints*/ 1> {
   /// Turning about the blade, and moving ahead: sections that span D.
   std::vector<Symmetry<ChaplyginSleigh>> sections() const;
   std::vector<Quantity<ChaplyginSleigh>> quantities() const;
+  static std::vector<ObservedName> observed_names() {
+    return {{"E", "energy"}, {"velocities", "w"}, {"velocities", "v1"}};
+  }
+  template <class S> Vector<S, 3> observed(const State<SE2, S>& s, const Matrix<S, 3, 3>& /*pose*/) const {
+    const auto m = varied<S>(mass);
+    const auto a = varied<S>(offset);
+    const S w = s.momentum(0) / (varied<S>(inertia) + m * a * a);
+    const S v1 = s.momentum(1) / m;
+    return {(s.momentum(0) * w + s.momentum(1) * v1) * 0.5, w, v1};
+  }
 };
 
 LAGROID_STEPS(extern template, ChaplyginSleigh);

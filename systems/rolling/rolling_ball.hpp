@@ -13,6 +13,7 @@
 /// Requires positive mass, radius and inertia factor, and starts that roll, which `rolling` makes. (Neimark and Fufaev,
 /// Dynamics of Nonholonomic Systems, 1972.)
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/parameter.hpp>
@@ -133,6 +134,28 @@ struct RollingBall : System<RollingBall, Product<Pair<2>, SO3>, /*arrow constrai
   /// Marsden, Murray, Arch. Rational Mech. Anal. 136, 1996).
   std::vector<Symmetry<RollingBall>> symmetries() const;
   std::vector<Quantity<RollingBall>> quantities() const;
+  static std::vector<ObservedName> observed_names() {
+    return {{"momentum about the contact", "K1"},
+            {"momentum about the contact", "K2"},
+            {"momentum about the contact", "K3 = k m r^2 w3"},
+            {"E", "energy"},
+            {"E - Omega J", "moving energy E - Omega J"},
+            {"angular_velocity", "w1"},
+            {"angular_velocity", "w2"},
+            {"angular_velocity", "w3"}};
+  }
+  template <class S> Vector<S, 8> observed(const State<GroupoidType, S>& s, const Arrow<S>& /*configuration*/) const {
+    const Vector<S, 2>& q = std::get<0>(s.object);
+    const auto& mu = s.momentum;
+    const auto r = varied<S>(radius);
+    const Vector<S, 3> turning = mu.template tail<3>();
+    const Vector<S, 3> w = turning / constant<S>(-inertia<S>());
+    const S energy = ((mu(0) * mu(0) + mu(1) * mu(1)) / varied<S>(mass) - turning.dot(w)) * 0.5;
+    Vector<S, 8> out;
+    out << -mu(1) * r - mu(2), mu(0) * r - mu(3), -mu(4), energy,
+        energy - (q(0) * mu(1) - q(1) * mu(0) - mu(4)) * varied<S>(plate_rate), w;
+    return out;
+  }
   static auto reductions() {
     return std::tuple(reduction("rotations", RotatedPlaneQuotient{}, "rotations of plate and ball about its centre"),
                       reduction("translations", ProductMorphism<Difference<2>, IdentityMorphism<SO3>>{},

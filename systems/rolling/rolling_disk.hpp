@@ -13,6 +13,7 @@
 /// Control, chapter 1.)
 
 #include <lagroid/core/capabilities/balance.hpp>
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/se2.hpp>
@@ -98,6 +99,13 @@ struct RollingDisk : System<RollingDisk, Product<SE2, SO2>, /*arrow constraints*
   /// Turning, and rolling ahead: sections that span D.
   std::vector<Symmetry<RollingDisk>> sections() const;
   std::vector<Quantity<RollingDisk>> quantities() const;
+  static std::vector<ObservedName> observed_names() { return {{"E", "energy"}, {"rates", "w"}, {"rates", "s"}}; }
+  template <class S> Vector<S, 3> observed(const State<GroupoidType, S>& z, const Arrow<S>& /*configuration*/) const {
+    const auto& mu = z.momentum;
+    const S w = mu(0) / varied<S>(turning_inertia);
+    const S s = mu(3) / varied<S>(rolling_inertia);
+    return {(mu(0) * w + (mu(1) * mu(1) + mu(2) * mu(2)) / varied<S>(mass) + mu(3) * s) * 0.5, w, s};
+  }
 };
 
 LAGROID_STEPS(extern template, RollingDisk);

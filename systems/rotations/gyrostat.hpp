@@ -9,6 +9,7 @@
 ///
 /// Requires positive moments. (Marsden and Ratiu, Introduction to Mechanics and Symmetry, 15.11.)
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/derivatives/implicit.hpp>
@@ -127,6 +128,23 @@ struct Gyrostat : System<Gyrostat, Product<SO3, SO2, SO2, SO2>> {
          }}};
     for (const auto& symmetry : symmetries()) all.push_back(symmetry.quantity());
     return all;
+  }
+  static std::vector<ObservedName> observed_names() {
+    std::vector<ObservedName> all{{"H", "energy"},
+                                  {"spatial momentum A M", "Jx"},
+                                  {"spatial momentum A M", "Jy"},
+                                  {"spatial momentum A M", "Jz"}};
+    for (const char* rotor : {"1", "2", "3"})
+      all.push_back({"momenta of the rotors", std::string("momentum of rotor ") + rotor});
+    for (const char* rate : {"w1", "w2", "w3", "t1", "t2", "t3"}) all.push_back({"rates", rate});
+    return all;
+  }
+  template <class S> Vector<S, 13> observed(const State<GroupoidType, S>& s, const Arrow<S>& configuration) const {
+    const Vector<S, 6> rates = velocity<S>(s.momentum);
+    Vector<S, 13> out;
+    out << s.momentum.dot(rates) * 0.5, Vector<S, 3>(std::get<0>(configuration) * s.momentum.template head<3>()),
+        s.momentum.template tail<3>(), rates;
+    return out;
   }
   using ByTheRotors = FactorConnection<Factors<1, 2, 3>, SO3, SO2, SO2, SO2>;
   static auto reductions() {

@@ -10,6 +10,7 @@
 ///
 /// Requires positive principal moments and unit vectors v.
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/capabilities/reductions.hpp>
 #include <lagroid/core/noether.hpp>
@@ -110,6 +111,27 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   /// Turning about the vertical; a Lagrange top also about its own axis.
   std::vector<Symmetry<HeavyTop>> symmetries() const;
   std::vector<Quantity<HeavyTop>> quantities() const;
+  static std::vector<ObservedName> observed_names() {
+    return {{"H", "energy"},
+            {"Jz", "vertical momentum M.v"},
+            {"axial", "axial momentum M3"},
+            {"K", "Kovalevskaya integral"},
+            {"angular_velocity", "w1"},
+            {"angular_velocity", "w2"},
+            {"angular_velocity", "w3"}};
+  }
+  template <class S> Vector<S, 7> observed(const State<GroupoidType, S>& s, const Arrow<S>& /*configuration*/) const {
+    const auto& [v, mu] = s;
+    const auto& moments = varied<S>(inertia);
+    const auto& c = varied<S>(weight);
+    const Vector<S, 3> w = mu.cwiseQuotient(moments);
+    const S real = w(0) * w(0) - w(1) * w(1) - (v(0) * c(0) - v(1) * c(1)) / moments(2);
+    const S imaginary = w(0) * w(1) * 2.0 - (v(1) * c(0) + v(0) * c(1)) / moments(2);
+    Vector<S, 7> out;
+    out << mu.dot(w) * 0.5 + (v(0) * c(0) + v(1) * c(1) + v(2) * c(2)), mu.dot(v), mu(2),
+        real * real + imaginary * imaginary, w;
+    return out;
+  }
   static auto reductions() {
     return std::tuple(
         fixed_momentum("vertical-momentum", ShortestRotation{}, "the vertical seen from the body alone moves"));

@@ -11,6 +11,7 @@
 ///
 /// Requires positive principal moments. [G] 6.1
 
+#include <lagroid/core/capabilities/observed_numbers.hpp>
 #include <lagroid/core/capabilities/rates_over.hpp>
 #include <lagroid/core/quantity.hpp>
 #include <lagroid/systems/control/rotation_map.hpp>
@@ -77,6 +78,21 @@ struct RigidBody : System<RigidBody, SO3> {
     return {SO3::exp(Vector<double, 3>(h * s.momentum.cwiseQuotient(inertia))), {}};
   }
 
+  static std::vector<ObservedName> observed_names() {
+    return {{"H", "energy"},
+            {"spatial momentum A M", "Jx"},
+            {"spatial momentum A M", "Jy"},
+            {"spatial momentum A M", "Jz"},
+            {"angular_velocity", "w1"},
+            {"angular_velocity", "w2"},
+            {"angular_velocity", "w3"}};
+  }
+  template <class S> Vector<S, 7> observed(const State<SO3, S>& s, const Matrix<S, 3, 3>& attitude) const {
+    const Vector<S, 3> w = s.momentum.cwiseQuotient(varied<S>(inertia));
+    Vector<S, 7> out;
+    out << s.momentum.dot(w) * 0.5, Vector<S, 3>(attitude * s.momentum), w;
+    return out;
+  }
   std::vector<Quantity<RigidBody>> quantities() const {
     return {{"energy",
              {"H"},

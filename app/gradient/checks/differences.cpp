@@ -63,14 +63,15 @@ struct RowScales {
   Eigen::ArrayXd most;         ///< the largest change of each by a column's size
 };
 
-constexpr double known = 0.1;     ///< to so much of the largest in its row a difference tells something
+constexpr double known = 0.1;  ///< to so much of the largest in its row a difference tells something
+constexpr double well_known = 1e-4;
 constexpr double agreed = 1e-5;   ///< of that: differences that are off by less are no contradiction
 constexpr double settled = 1e-9;  ///< of that: no others are tried
 
 /// Of differences, one after another: of the usual width, and narrower ones. Where some row is steep, or what it does
 /// not show, that changes by its own size where the number changes by less than its.
+constexpr double usual = 2e-3;
 std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows, double size, double rate) {
-  constexpr double usual = 2e-3;
   const double steepest = size * std::max(rate, (rows.scales > 0).select(exact.abs() / rows.scales, 0.0).maxCoeff());
   std::vector<double> out{usual * size};
   if (steepest > 3)
@@ -86,9 +87,10 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
   Compared out{.size = size};
   out.agrees.setConstant(count, false);
   out.told_otherwise.setConstant(count, false);
-  for (const double width : widths_of(exact, rows, size, rate)) {
+  bool is_settled = false;
+  const auto compare_at = [&](double width, double known_to) {
     const auto found = extrapolated_difference(values, width);
-    if (!found) continue;
+    if (!found) return;
     const Eigen::ArrayXd value = found->value;
     const Eigen::ArrayXd off = (value - exact).abs() * size;
     const Eigen::ArrayXd own = 10 * rows.derivatives * size;
@@ -100,7 +102,7 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
     // Of runs that end farther apart than rows are large, differences are no derivatives.
     const auto is_near =
         (rows.scales <= 0 || exact.abs() * width <= rows.scales) && Booleans::Constant(count, rate * width <= 1);
-    const auto is_known = is_near && of_difference <= own.max(known * most);
+    const auto is_known = is_near && of_difference <= own.max(known_to * most);
     const auto tells = error <= most.max(rows.scales);
     out.agrees = out.agrees || (is_known && off <= error) || (tells && off <= own.max(agreed * most));
     out.told_otherwise = out.told_otherwise || (is_known && off > error);
@@ -114,8 +116,15 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
       out.error = out.error.min(error).eval();
       out.off = nearer.select(off, out.off).eval();
     }
-    if ((out.off <= settled * most).all()) break;
+    is_settled = (out.off <= settled * most).all();
+  };
+  for (const double width : widths_of(exact, rows, size, rate)) {
+    compare_at(width, known);
+    if (is_settled) return out;
   }
+  // An angle of many turns repeats itself within these: only differences that are known well tell more than they.
+  for (const double narrower : {1e-4, 1e-5, 1e-6, 1e-7})
+    if ((out.told_otherwise && !out.agrees).any()) compare_at(narrower * usual * size, well_known);
   return out;
 }
 

@@ -20,10 +20,10 @@ namespace lagroid::app {
 namespace {
 
 /// Whether a group is of the state itself: what is computed of that is a number alone of its kind, or one of these.
-bool is_of_state(const std::string& group, const GradientSubject& subject) {
-  static const std::set<std::string> others{"energy", "momenta", "Casimirs", "time", "computed"};
-  if (others.contains(group)) return false;
-  const auto is_of = [&](const GradientName& each) { return each.group == group; };
+bool is_of_state(const GradientName& name, const GradientSubject& subject) {
+  static const std::set<std::string> others{"energy", "momenta", "Casimirs", "time"};
+  if (name.is_computed || others.contains(name.group)) return false;
+  const auto is_of = [&](const GradientName& each) { return each.group == name.group; };
   return std::any_of(subject.start.begin(), subject.start.end(), is_of) ||
          std::count_if(subject.observed.begin(), subject.observed.end(), is_of) > 1;
 }
@@ -41,9 +41,7 @@ constexpr double rounding = 1e-14;
 
 }  // namespace
 
-std::string unit_of(const GradientName& name) {
-  return name.group == "computed" ? "computed " + name.name : name.group;
-}
+std::string unit_of(const GradientName& name) { return name.is_computed ? "computed " + name.name : name.group; }
 
 void see(const GradientSubject& subject, const Eigen::VectorXd& observed, SizesOfUnits& sizes) {
   if (observed.size() != Eigen::Index(subject.observed.size()))
@@ -70,7 +68,7 @@ RunGrowth::RunGrowth(const GradientSubject& subject, SizesOfUnits sizes)
     : subject_(&subject), sizes_(std::move(sizes)) {
   for (const GradientName& each : subject.observed) {
     units_.push_back(unit_of(each));
-    is_of_state_.push_back(is_of_state(each.group, subject));
+    is_of_state_.push_back(is_of_state(each, subject));
   }
   const auto motion = subject.begin({}, {});
   const Eigen::MatrixXd at_start =

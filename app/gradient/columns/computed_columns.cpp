@@ -127,14 +127,21 @@ GradientSubject with_columns(const GradientSubject& subject, const std::vector<N
   const bool with_time = std::none_of(subject.observed.begin(), subject.observed.end(),
                                       [](const GradientName& each) { return each.name == "t"; });
   if (with_time) names.emplace_back("t");
-  for (const GradientName& each : subject.observed) names.push_back(each.name);
+  const auto is_column = [&](const std::string& name) {
+    return std::any_of(columns.begin(), columns.end(), [&](const NamedText& each) { return each.first == name; });
+  };
+  // A column of the user's own stands in the place of one that comes by its name alone.
+  for (GradientName& each : out.observed)
+    if (each.only_by_name && is_column(each.name))
+      each = {"recorded " + each.group, "recorded " + each.name, true, true};
+  for (const GradientName& each : out.observed) names.push_back(each.name);
   std::vector<std::shared_ptr<ComputedNumber>> computed;
   for (const NamedText& column : columns) {
     if (std::find(names.begin(), names.end(), column.first) != names.end())
       throw GradientRefused(fmt::format("--column {}: there is one of that name", column.first));
     computed.push_back(std::make_shared<ComputedNumber>(column, names));
     names.push_back(column.first);
-    out.observed.push_back({"computed", column.first});
+    out.observed.push_back({"computed", column.first, true});
   }
   out.begin = [subject, computed, with_time](const std::vector<std::string>& parameters,
                                              const std::vector<Nudge>& nudges) -> std::unique_ptr<LinearisedMotion> {

@@ -3,8 +3,9 @@
 ///
 ///     const GradientSubject more = with_columns(subject, {{"w1", "M1 / parameters.inertia.0"}});
 ///
-/// Names in a text are columns of the run, earlier ones of these, `t`, and parameters.NAME. Errors: GradientRefused,
-/// one line, for a name that is taken and for a text that is no expression of these.
+/// Names in a text are columns of the run, earlier ones of these, `t`, and parameters.NAME; a name of its own that is
+/// not of the state stands for these from there on. Errors: GradientRefused, one line, for a name that is taken and for
+/// a text that is no expression of these.
 
 #include "../gradient_subject.hpp"
 

@@ -195,6 +195,7 @@ Fit fit_scene(const GradientSubject& scene, const std::vector<std::string>& file
   fit.runs = files.size();
   const GradientColumns columns = columns_of(subject, options.unknowns);
   fit.notes = notes_on_left_out(subject, columns);
+  fit.notes.insert(fit.notes.end(), subject.notes.begin(), subject.notes.end());
   std::vector<MeasuredRun> measured = read_measured(subject, files, options, fit);
   const std::vector<Guessed> unknowns = unknowns_of(subject, columns, files.size(), options, fit);
   for (const auto& bound : options.bounds)

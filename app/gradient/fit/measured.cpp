@@ -146,10 +146,12 @@ class Reader {
   }
   /// The column to be fitted of that name, if there is one.
   std::optional<std::size_t> wanted(const std::string& name) {
-    const auto all = names();
-    const bool is_known = std::find(all.begin(), all.end(), name) != all.end();
-    const bool is_chosen = options_.columns.empty() ||
-                           std::find(options_.columns.begin(), options_.columns.end(), name) != options_.columns.end();
+    const auto known = std::find_if(subject_.observed.begin(), subject_.observed.end(),
+                                    [&](const GradientName& each) { return each.name == name; });
+    const bool is_known = known != subject_.observed.end();
+    const bool is_named = std::find(options_.columns.begin(), options_.columns.end(), name) != options_.columns.end();
+    // What is computed of the state says nothing that the state does not.
+    const bool is_chosen = is_named || (options_.columns.empty() && is_known && !known->only_by_name);
     if (is_known && is_chosen) return column_of(name);
     std::vector<std::string>& unused = is_known ? fit_.left_out : fit_.ignored;
     if (std::find(unused.begin(), unused.end(), name) == unused.end()) unused.push_back(name);
@@ -175,6 +177,10 @@ std::vector<MeasuredRun> read_measured(const GradientSubject& subject, const std
                      [&](const MeasuredRun& run) { return std::any_of(run.begin(), run.end(), is_of_it); }))
       throw DataError(fmt::format("{}: nothing is measured of it", column.name));
   }
+  for (const auto& [name, sigma] : options.sigma)
+    if (std::none_of(fit.columns.begin(), fit.columns.end(),
+                     [&](const Fit::Column& each) { return each.name == name; }))
+      fit.notes.push_back(fmt::format("--sigma {}: no column of that name is used", name));
   return out;
 }
 
