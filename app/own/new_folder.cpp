@@ -103,8 +103,8 @@ Words words_of_system(const std::string& name, const Offered& on) {
         "L(g) = <x, M x> / 2h - h (V(q) + V(q')) / 2 on an arrow from q to q', V = k |q|^2 / 2,\n//";
     words["members"] =
         "  double stiffness = 1;                                                    // k\n\n"
-        "  template <class S, int N> S potential(const Vector<S, N>& q) const { return q.squaredNorm() * "
-        "(varied<S>(stiffness) * 0.5); }\n";
+        "  template <class S, int N> S potential(const Vector<S, N>& q) const {\n"
+        "    return q.squaredNorm() * (varied<S>(stiffness) * 0.5);\n  }\n";
     words["more_parameters"] = fmt::format(
         ",\n                      parameter(\"stiffness\", &{}::stiffness, \"N/m\", \"of the spring to the origin\")",
         of);
