@@ -10,8 +10,10 @@
 
 #include <lagroid/core/version.hpp>
 #include <lagroid/run/files/checkpoint.hpp>
+#include <lagroid/run/files/kept_file.hpp>
 #include <lagroid/run/files/output.hpp>
 #include <lagroid/run/interrupt.hpp>
+#include <lagroid/run/process.hpp>
 #include <lagroid/run/reports/report.hpp>
 
 #include <fmt/format.h>
@@ -21,11 +23,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -61,44 +65,63 @@ int hand_over(std::string_view name, const RunOptions& options, const std::vecto
   return command->run_scene(options, options.out);
 }
 
-/// Hands over to a program beside lagroid, NAME-check or NAME-gradient beside NAME: what they hold of every system
-/// takes long to compile, and whoever only runs scenes need not wait for it.
-int hand_over_beside(const std::string& command, const std::string& status, const std::string& what,
-                     SceneOptions options, int argc, char** argv) {
-  options.json = asks_for_json(argc, argv);
-  const std::string program = std::filesystem::canonical("/proc/self/exe").string();
-  const std::string beside = program + "-" + command;
-  ::execv(beside.c_str(), argv);
-  return refuse(
-      options.json, exit_bad_input, status,
-      fmt::format("{}: {}; it holds the {}, and was not built: build the target {}_{}, of a program of your own with "
-                  "the component of find_package that makes it, or install a package that has it",
-                  beside, std::strerror(errno), what, std::filesystem::path(program).filename().string(), command));
+/// NAME-check or NAME-gradient beside NAME: what they hold of every system takes long to compile, and whoever only runs
+/// scenes need not wait for it.
+std::string program_beside(const std::string& command) {
+  return std::filesystem::canonical("/proc/self/exe").string() + "-" + command;
 }
-int hand_over_to_gradients(const SceneOptions& options, int argc, char** argv) {
-  return hand_over_beside("gradient", "no_gradients", "derivatives of runs", options, argc, argv);
+int refuse_without(const std::string& beside, const std::string& status, const std::string& what, int error,
+                   bool json) {
+  return refuse(json, exit_bad_input, status,
+                fmt::format("{}: {}; it holds the {}, and was not built: build the target lagroid_{}, of a program of "
+                            "your own with the component of find_package that makes it, or install a package that has "
+                            "it",
+                            beside, std::strerror(error), what, beside.substr(beside.rfind('-') + 1)));
+}
+constexpr const char* no_gradients = "no_gradients";
+constexpr const char* derivatives_of_runs = "derivatives of runs";
+
+/// Hands over to such a program.
+int hand_over_beside(const std::string& command, const std::string& status, const std::string& what, int argc,
+                     char** argv) {
+  const std::string beside = program_beside(command);
+  ::execv(beside.c_str(), argv);
+  return refuse_without(beside, status, what, errno, asks_for_json(argc, argv));
 }
 
-/// Goes on with what errors of the start and of parameters become along the run: lagroid gradient has their table.
-int carry_errors(const RunOptions& options) {
-  print(options.covariance.empty()
-            ? "\n"
-            : fmt::format("\n  from the numbers that were fitted ({}) in place of the scene's:\n", options.covariance));
-  std::vector<std::string> words{"gradient", options.scene};
+/// What errors of the start and of parameters become along the run: the table that lagroid gradient has of it. Nothing,
+/// and `code` is set, where there is none, which was told.
+std::optional<std::string> errors_of_run(const RunOptions& options, int& code) {
+  const std::string beside = program_beside("gradient");
+  std::vector<std::string> words{beside, options.scene};
   for (const std::string& each : options.overrides) words.insert(words.end(), {"--set", each});
   if (!options.covariance.empty()) words.insert(words.end(), {"--covariance", options.covariance});
   if (!options.deviations.empty())
     words.insert(words.end(), {"--deviations", fmt::format("{}", fmt::join(options.deviations, ","))});
-  std::vector<char*> argv;
-  for (std::string& each : words) argv.push_back(each.data());
-  argv.push_back(nullptr);
-  return hand_over_to_gradients(options, int(words.size()), argv.data());
+  std::string file = (std::filesystem::temp_directory_path() / "lagroid-XXXXXX").string();
+  const int opened = ::mkstemp(file.data());
+  if (opened < 0) throw RunError(fmt::format("{}: {}", file, std::strerror(errno)));
+  ::close(opened);
+  std::optional<std::string> table;
+  try {
+    code = run_process(words, {.out = file});
+    if (code == 0) table = contents(file);
+  } catch (const std::system_error& error) {
+    code = refuse_without(beside, no_gradients, derivatives_of_runs, error.code().value(), false);
+  }
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  if (table && !options.covariance.empty())
+    table =
+        fmt::format("from the numbers that were fitted ({}) in place of the scene's:\n{}", options.covariance, *table);
+  return table;
 }
 
 /// Runs the scene, or takes up the run in the folder `out`.
 int run(const RunOptions& options, bool resume, const std::vector<ProgramCommand>& commands) {
   RunResult result;
   std::optional<OutputFolder> folder;
+  std::optional<std::string> errors;
   try {
     const Section scene =
         resume ? kept_scene(*options.out, options.overrides) : read_scene(options.scene, options.overrides);
@@ -108,8 +131,7 @@ int run(const RunOptions& options, bool resume, const std::vector<ProgramCommand
                                    options.scene, command));
       return hand_over(command, options, commands);
     }
-    if (!options.covariance.empty() && !std::filesystem::is_regular_file(options.covariance))
-      throw RunError(fmt::format("{}: no such file; lagroid fit --json prints what it is to hold", options.covariance));
+    if (int code = 0; options.carries_errors() && !(errors = errors_of_run(options, code))) return code;
     if (options.out) folder.emplace(resume ? folder_of_run(*options.out) : folder_for_run(*options.out, scene.whole()));
     if (resume) Checkpoint::require_this_build(*options.out, options.other_build);
     result = run_scene(scene, {.record = options.out.has_value(),
@@ -123,16 +145,21 @@ int run(const RunOptions& options, bool resume, const std::vector<ProgramCommand
   if (options.out) {
     for (const auto& file : write_outputs_if_possible(result, *options.out))
       report += fmt::format("  wrote {}\n", file.string());
+    if (errors) {
+      const std::filesystem::path file = std::filesystem::path(*options.out) / "errors.txt";
+      write_text(*errors, file);
+      report += fmt::format("  wrote {}\n", file.string());
+    }
   } else {
     report = "  (no files written; --out DIR writes trajectory, plot and summary)\n";
   }
+  if (errors) report += "\n" + *errors;
   print(options.json ? json_report(result) + "\n" : text_report(result) + report);
   if (!result.converged()) complain(fmt::format("{}: {}", resume ? *options.out : options.scene, result.message));
   if (!result.output_error.empty()) complain(result.output_error);
   if (result.interrupted() && result.output_error.empty()) return exit_interrupted;
   if (!result.converged() || !result.output_error.empty()) return exit_failed;
-  const int code = code_after_writing(0, resume ? *options.out : options.scene);
-  return code == 0 && options.carries_errors() ? carry_errors(options) : code;
+  return code_after_writing(0, resume ? *options.out : options.scene);
 }
 
 /// Writes something from a run's folder: `make` returns the files.
@@ -224,8 +251,9 @@ int program(int argc, char** argv, ProgramParts parts) {
       return 0;
     }
     if (schema_command->parsed()) return schema(schema_options);
-    if (check_command->parsed()) return hand_over_beside("check", "no_laws", "laws", options, argc - 1, argv + 1);
-    if (gradient_command->parsed() || fit_command->parsed()) return hand_over_to_gradients(options, argc - 1, argv + 1);
+    if (check_command->parsed()) return hand_over_beside("check", "no_laws", "laws", argc - 1, argv + 1);
+    if (gradient_command->parsed() || fit_command->parsed())
+      return hand_over_beside("gradient", no_gradients, derivatives_of_runs, argc - 1, argv + 1);
     if (run_command->parsed()) return run(options, false, commands);
     if (resume_command->parsed()) return run(options, true, commands);
     if (view_command->parsed()) return from_run([&] { return std::vector{write_view(view)}; });

@@ -132,7 +132,7 @@ refused() { # refused ARGUMENTS-OF-FIND_PACKAGE MESSAGE
   fi
   tr -s ' \n' ' ' <"$work/refused.log" | grep -qF "$2" || { cat "$work/refused.log" >&2; fail "refused without: $2"; }
 }
-refused "COMPONENTS cores" 'lagroid has no component "cores"; it has core, solvers, systems, run, commands, laws and program'
+refused "COMPONENTS cores" 'lagroid has no component "cores"; it has core, solvers, systems, run, commands, derivatives, laws and program'
 refused "9.0" 'compatible with requested version "9.0"'
 refused "0.1" 'compatible with requested version "0.1"'
 say "holds"

@@ -78,6 +78,24 @@ class Observed(unittest.TestCase):
             plain = json.loads(gradients(part, examples / f"{part}.toml", "--of", f"final.{text[2:]}", *words).stdout)
             self.assertEqual(found["values"], [2 * plain["values"][0]])
 
+    def test_angles_are_fitted_whole_turns_apart(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = (examples / "chaplygin_sleigh.toml", "--set", "initial.position=[0,0,3.0]")
+            out = pathlib.Path(folder) / "run"
+            self.assertEqual(run(bin_folder / "lagroid", "run", *scene, "--set", "parameters.mass=1.3", "--out", out).returncode, 0)
+            rows = rows_of(out / "trajectory.csv")
+            self.assertGreater(max(float(row["heading"]) for row in rows) - min(float(row["heading"]) for row in rows), 6)
+            told = gradients("chaplygin_sleigh", "fit", scene[0], out / "trajectory.csv", *scene[1:], "--of", "heading", "--wrt",
+                             "parameters.mass", "--json")
+            self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+            self.assertAlmostEqual(json.loads(told.stdout)["unknowns"][0]["value"], 1.3, delta=1e-8)
+
+    def test_columns_are_called_as_runs_call_them(self):
+        event = ("--set", 'event=[{name = "low", when = "H - 0.2", direction = "falling"}]', "--set", "time.steps=400")
+        self.assertEqual(run(of_part("damped_pendulum"), "run", examples / "damped_pendulum.toml", *event).returncode, 0)
+        found = self.checked("damped_pendulum", "damped_pendulum", "event.low.1.t,event.low.1.H,final.energy", *event)
+        self.assertEqual(found["of"][-1], "final.H")
+
     def test_what_has_no_derivative_says_why(self):
         for part, scene, name, why in (("rigid_body", "rigid_body", "final.A_w", "known up to its sign"),
                                        ("damped_pendulum", "damped_pendulum", "final.energy less work", "adds up along the run"),
@@ -134,6 +152,11 @@ class ErrorsOfRuns(unittest.TestCase):
             self.assertTrue((out / "trajectory.csv").exists())
             alone = run(of_part("pendulum"), "gradient", *scene, "--deviations", "initial.momentum=0.02,parameters.length=0.01")
             self.assertTrue(told.stdout.endswith(alone.stdout), told.stdout)
+            self.assertEqual((out / "errors.txt").read_text(), alone.stdout)
+            # What cannot be carried is told before anything is run.
+            told = run(of_part("pendulum"), "run", *scene, "--out", pathlib.Path(folder) / "none", "--deviations", "initial.zz=1")
+            self.assertEqual((told.returncode, told.stdout, len(told.stderr.splitlines())), (2, "", 1), told.stderr)
+            self.assertFalse((pathlib.Path(folder) / "none").exists())
             self.assertIn("converged", told.stdout[:-len(alone.stdout)])
             told = run(of_part("pendulum"), "fit", *scene[:1], out / "trajectory.csv", *scene[1:], "--wrt", "parameters.length", "--json")
             file = pathlib.Path(folder) / "fit.json"

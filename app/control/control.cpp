@@ -48,6 +48,22 @@ std::string_view keys_of_starts(ControlStatus status) {
   }
 }
 
+/// Why a search whose duration ran away found nothing; empty of any other.
+std::string why_it_ran_away(const Section& scene, const ControlResult& found) {
+  if (found.report.converged() || found.report.status == ControlStatus::infeasible || scene.has("phase") ||
+      found.times.empty())
+    return "";
+  constexpr double much = 100;
+  const double guess = scene.section_or_empty("horizon").number_or("duration", 0);
+  const double reached = found.times.back() - found.times.front();
+  if (!(guess > 0) || !(reached > much * guess)) return "";
+  return fmt::format(
+      "the cost falls as the duration grows, from a first guess of {:.4g} s to {:.3g} s, and nothing bounds it: let "
+      "time "
+      "cost something (parameters.cost = \"time\"), or give the duration (horizon.free = false)",
+      guess, reached);
+}
+
 }  // namespace
 
 void add_control_options(CLI::App& command, ControlCommandOptions& options) {
@@ -81,6 +97,8 @@ int control(const ControlCommandOptions& options) {
     });
   }
   found.interrupted = guard.interrupted();
+  const std::string ran_away = why_it_ran_away(scene, found);
+  if (!ran_away.empty()) found.report.message = ran_away;
   std::string text = control_text(found);
   auto json = control_json(found);
   if (options.out) {
@@ -97,7 +115,8 @@ int control(const ControlCommandOptions& options) {
   }
   if (found.report.converged()) return code_after_writing(0, options.scene);
   complain(fmt::format("{}: {}: {}{}{}", options.scene, to_string(found.report.status), found.report.message,
-                       what_first(found), keys_of_starts(found.report.status)));
+                       ran_away.empty() ? what_first(found) : "",
+                       ran_away.empty() ? keys_of_starts(found.report.status) : ""));
   return exit_failed;
 }
 

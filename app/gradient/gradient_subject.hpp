@@ -26,6 +26,7 @@ struct GradientName {
   std::string name;
   bool is_computed = false;   ///< of the state, of which it is no number of its own
   bool only_by_name = false;  ///< not among all that there are
+  bool is_angle = false;      ///< from -pi to pi
 };
 
 /// By what a start differs: along direction `index` of (displacement, momentum), or a parameter where there is a name.

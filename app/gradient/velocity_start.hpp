@@ -1,5 +1,5 @@
 #pragma once
-/// Starts that scenes give by velocities (core/capabilities/velocity_start.hpp), or by momenta.
+/// Starts that scenes give by velocities (core/derivatives/velocity_start.hpp), or by momenta.
 ///
 /// States of a run are places and momenta; where a scene gives velocities these are what is kept as parameters change.
 ///
@@ -9,7 +9,7 @@
 ///
 /// Requires a start that keeps the constraints. Nothing throws but std::invalid_argument for a parameter that is none.
 
-#include <lagroid/core/capabilities/velocity_start.hpp>
+#include <lagroid/core/derivatives/velocity_start.hpp>
 #include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 

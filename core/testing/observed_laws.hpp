@@ -2,7 +2,8 @@
 /// Numbers that a system observes of its nodes (core/capabilities/observed_numbers.hpp) as properties that a user's own
 /// system runs by naming itself: they are what the ledger watches, and their derivatives are those of the numbers.
 ///
-///     const laws::LawReport report = laws::observed_laws(system, [] { return laws::NodeOf<Pendulum>{draw_state()}; });
+///     const laws::LawReport report = laws::observed_laws(system, [] { return
+///     laws::ObservedState<Pendulum>{draw_state()}; });
 ///
 /// Requires draw(), nodes of the system's motions. Returns a report with one entry a law, relative to the size of the
 /// numbers; throws nothing.
@@ -16,12 +17,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace lagroid::laws {
 
-template <DiscreteSystem Sys> struct NodeOf {
+template <DiscreteSystem Sys> struct ObservedState {
   State<typename Sys::GroupoidType> state{};
   ArrowOf<typename Sys::GroupoidType> configuration{};
 };
@@ -30,7 +32,7 @@ namespace detail {
 
 /// What is observed where the node is displaced by v, along tau, and its momentum by w.
 template <class S, ObservesNumbers Sys, int N>
-Vector<S, Eigen::Dynamic> observed_beside(const Sys& system, const NodeOf<Sys>& node, const Vector<S, N>& v,
+Vector<S, Eigen::Dynamic> observed_beside(const Sys& system, const ObservedState<Sys>& node, const Vector<S, N>& v,
                                           const Vector<S, N>& w) {
   using G = typename Sys::GroupoidType;
   const G& groupoid = system.groupoid;
@@ -57,22 +59,29 @@ LawReport observed_laws(const Sys& given, const Draw& draw, double tolerance = 1
   constexpr double width = 1e-2;
   Sys system = given;
   const std::vector<ObservedName> names = Sys::observed_names();
-  const auto here = [&](const NodeOf<Sys>& node) {
+  const auto counted = [&](const ObservedState<Sys>& node) {
     return Eigen::VectorXd(detail::observed_beside<double>(system, node, V(V::Zero()), V(V::Zero())));
+  };
+  const auto here = [&](const ObservedState<Sys>& node) {
+    Eigen::VectorXd out = counted(node);
+    if (out.size() != Eigen::Index(names.size())) throw std::logic_error("there are more numbers than names, or fewer");
+    return out;
   };
   LawReport report{"observed numbers", {}};
   report.laws.push_back(check_law("there are as many as names", 0.0,
-                                  [&] { return std::abs(double(here(draw()).size()) - double(names.size())); }));
+                                  [&] { return std::abs(double(counted(draw()).size()) - double(names.size())); }));
   report.laws.push_back(check_law("they are the ledger's", 1e-13, [&] {
-    const NodeOf<Sys> node = draw();
+    const ObservedState<Sys> node = draw();
     TrajectoryPoint<Sys> point;
     point.state = node.state;
     point.configuration = node.configuration;
     const Eigen::VectorXd numbers = here(node);
     double largest = 0;
+    int of_nodes = 0;
     int compared = 0;
     for (const Quantity<Sys>& each : quantities_of(system)) {
       if (each.serialize || each.needs_step) continue;
+      ++of_nodes;
       std::vector<double> watched(each.components.size());
       each.evaluate(point, watched.data());
       const double size =
@@ -86,11 +95,12 @@ LawReport observed_laws(const Sys& given, const Draw& draw, double tolerance = 1
         largest = worst({largest, std::abs(watched[i] - numbers(found - names.begin())) / (1 + size)});
       }
     }
-    if (compared == 0) throw NotSampled("the ledger watches nothing of these names");
+    if (of_nodes > 0 && compared == 0) throw NotSampled("the ledger watches nothing of these names");
     return largest;
   }));
   report.laws.push_back(check_law("slopes by the node are those of differences", tolerance, [&] {
-    const NodeOf<Sys> node = draw();
+    const ObservedState<Sys> node = draw();
+    here(node);  // as many as there are names
     Eigen::MatrixXd slopes(Eigen::Index(names.size()), 2 * n);
     lagroid::detail::for_directions(2 * n, [&](int first) {
       lagroid::detail::put_tangents(
@@ -112,7 +122,8 @@ LawReport observed_laws(const Sys& given, const Draw& draw, double tolerance = 1
     return largest;
   }));
   report.laws.push_back(check_law("slopes by parameters are those of differences", tolerance, [&] {
-    const NodeOf<Sys> node = draw();
+    const ObservedState<Sys> node = draw();
+    here(node);
     double largest = 0;
     for_each_parameter_number(system, [&](const std::string&, const double& member, const auto&) {
       const double* const place = &member;

@@ -118,7 +118,7 @@ class Panel:
 
 @final
 class RunResult:
-    _of: tuple[Any, Mapping[str, Any]]
+    _of: tuple[str, Mapping[str, Any]]
     @property
     def system(self) -> str: ...
     @property

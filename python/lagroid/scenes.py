@@ -104,8 +104,10 @@ def run(
     result = _lagroid.run(asked, record, out, called)
     if not called:  # functions of Python's are in no scene
         # A file itself, as what it names stands beside it; any other as it was set.
-        of_file = isinstance(scene, (str, os.PathLike)) and is_file(scene)
-        result._of = (os.path.abspath(scene), copy.deepcopy(given)) if of_file else (asked.toml(), {})
+        if isinstance(scene, Mapping) or not is_file(scene):
+            result._of = (asked.toml(), {})
+        else:
+            result._of = (os.path.abspath(scene), copy.deepcopy(given))
     return _finished(result)
 
 

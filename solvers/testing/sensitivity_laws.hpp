@@ -23,7 +23,7 @@
 #include <lagroid/core/testing/property.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
-#include <lagroid/solvers/testing/symplectic_form.hpp>
+#include <lagroid/core/testing/symplectic_form.hpp>
 
 #include <algorithm>
 #include <cmath>

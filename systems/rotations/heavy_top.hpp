@@ -56,10 +56,11 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   template <int Part, class S, class T>
   FlowOf<GroupoidType, S> flow(const T& t, const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
     if constexpr (Part == 0) {
-      const Vector<S, 3> w = weight.template cast<S>();
+      const auto& load = varied<S>(weight);
+      const Vector<S, 3> w(constant<S>(load(0)), constant<S>(load(1)), constant<S>(load(2)));
       return {{Matrix<S, 3, 3>::Identity(), v}, v.cross(w) * S(t)};
     } else {
-      const RotationSplitting kinetic(inertia);
+      const BasicRotationSplitting<ParameterScalar<S>> kinetic(varied<S>(inertia));
       const FlowOf<SO3, S> turn = Part == 1 ? kinetic.rest(t, mu) : kinetic.symmetric(t, mu);
       return {{turn.arrow, v}, turn.momentum_change};
     }

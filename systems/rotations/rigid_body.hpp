@@ -45,7 +45,7 @@ struct RigidBody : System<RigidBody, SO3> {
   static constexpr int parts = 2;
   template <int Part, class S, class T>
   FlowOf<SO3, S> flow(const T& t, const Vector<S, 0>&, const Vector<S, 3>& mu) const {
-    const RotationSplitting kinetic(inertia);
+    const BasicRotationSplitting<ParameterScalar<S>> kinetic(varied<S>(inertia));
     if constexpr (Part == 0) return kinetic.rest(t, mu);
     if constexpr (Part == 1) return kinetic.symmetric(t, mu);
   }

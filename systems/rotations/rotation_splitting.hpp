@@ -8,9 +8,10 @@
 ///     const RotationSplitting kinetic(Vector<double, 3>(1, 2, 3));
 ///     const FlowOf<SO3, double> turn = kinetic.symmetric(0.1, Vector<double, 3>(0.1, 1, 0.1));  // t, M
 ///
-/// Requires positive moments.
+/// Moments may carry derivatives. Requires positive ones.
 
 #include <lagroid/core/capabilities/split_system.hpp>
+#include <lagroid/core/scalars/varied.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
 
 #include <cmath>
@@ -46,32 +47,36 @@ template <class S> FlowOf<SO3, S> axial_turn(int i, const S& angle, const Vector
 /// A symmetric body is all H_sym, and keeps M_c. (The rotations about three axes, of M_i^2 / (2 I_i), turn further and
 /// err more; subtracting a multiple of |M|^2 costs nothing, for it commutes with all. Fasso, J. Comput. Phys. 189
 /// (2003) 527, compares such splittings.)
-class RotationSplitting {
+template <class P> class BasicRotationSplitting {
  public:
-  explicit RotationSplitting(const Vector<double, 3>& inertia) : inverse_(inertia.cwiseInverse()) {
-    if (inverse_(a_) < inverse_(b_)) std::swap(a_, b_);
-    if (inverse_(b_) < inverse_(c_)) std::swap(b_, c_);
-    if (inverse_(a_) < inverse_(b_)) std::swap(a_, b_);
-    if (inverse_(a_) - inverse_(b_) > inverse_(b_) - inverse_(c_)) std::swap(a_, c_);
+  explicit BasicRotationSplitting(const Vector<P, 3>& inertia)
+      : inverse_(P(1.0) / inertia(0), P(1.0) / inertia(1), P(1.0) / inertia(2)) {
+    if (inverse(a_) < inverse(b_)) std::swap(a_, b_);
+    if (inverse(b_) < inverse(c_)) std::swap(b_, c_);
+    if (inverse(a_) < inverse(b_)) std::swap(a_, b_);
+    if (inverse(a_) - inverse(b_) > inverse(b_) - inverse(c_)) std::swap(a_, c_);
   }
 
   /// Whether nothing is left for the rest.
-  bool is_symmetric() const { return inverse_(a_) == inverse_(b_); }
+  bool is_symmetric() const { return inverse(a_) == inverse(b_); }
 
   template <class T, class S> FlowOf<SO3, S> symmetric(const T& t, const Vector<S, 3>& mu) const {
-    FlowOf<SO3, S> out = axial_turn(c_, S(mu(c_) * (t * (inverse_(c_) - inverse_(b_)))), mu);
-    out.arrow = SO3::multiply(SO3::exp(Vector<S, 3>(mu * S(t * inverse_(b_)))), out.arrow);
+    FlowOf<SO3, S> out = axial_turn(c_, S(mu(c_) * constant<S>(t * (inverse_(c_) - inverse_(b_)))), mu);
+    out.arrow = SO3::multiply(SO3::exp(Vector<S, 3>(mu * constant<S>(t * inverse_(b_)))), out.arrow);
     return out;
   }
   template <class T, class S> FlowOf<SO3, S> rest(const T& t, const Vector<S, 3>& mu) const {
-    return axial_turn(a_, S(mu(a_) * (t * (inverse_(a_) - inverse_(b_)))), mu);
+    return axial_turn(a_, S(mu(a_) * constant<S>(t * (inverse_(a_) - inverse_(b_)))), mu);
   }
 
  private:
-  Vector<double, 3> inverse_;
+  double inverse(int i) const { return value_of(inverse_(i)); }
+
+  Vector<P, 3> inverse_;
   int a_ = 0;
   int b_ = 1;
   int c_ = 2;
 };
+using RotationSplitting = BasicRotationSplitting<double>;
 
 }  // namespace lagroid

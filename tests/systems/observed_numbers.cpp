@@ -25,11 +25,11 @@ namespace lagroid {
 namespace {
 
 /// Any state: an object at some distance from the origin, where there are places, and any momentum.
-template <class Sys> laws::NodeOf<Sys> any_node(const Sys& system) {
+template <class Sys> laws::ObservedState<Sys> any_node(const Sys& system) {
   using G = typename Sys::GroupoidType;
   const G& groupoid = system.groupoid;
   constexpr int objects = G::object_coordinate_count();
-  laws::NodeOf<Sys> node;
+  laws::ObservedState<Sys> node;
   Vector<double, objects> place = laws::draw_vector<objects>(0.5);
   place.array() += 1;
   node.configuration = groupoid.tau(groupoid.template object_at<double>(place),
@@ -85,7 +85,7 @@ TEST(ObservedNumbers, OfWhatRollsAreTheLedgers) {
 TEST(ObservedNumbers, OfTheSleighAreTheLedgers) {
   const ChaplyginSleigh sleigh;
   expect_observed(sleigh, [&] {
-    laws::NodeOf<ChaplyginSleigh> node = any_node(sleigh);
+    laws::ObservedState<ChaplyginSleigh> node = any_node(sleigh);
     node.state = sleigh.sliding(laws::draw_uniform(), laws::draw_uniform());
     return node;
   });
@@ -150,12 +150,19 @@ struct HeldPlace : Spring<HeldPlace> {
   }
 };
 
+struct TooMany : Spring<TooMany> {
+  template <class S> Vector<S, 2> observed(const State<Line, S>& s, const PairArrow<S, 1>&) const {
+    return {kinetic_energy(s.momentum), potential(s.object)};
+  }
+};
+
 TEST(ObservedNumbersBroken, AreSeen) {
   const auto broken = [](const auto& system, const char* law) {
     const laws::Sampling sampling(5, 1);
     const laws::LawReport report = laws::observed_laws(system, [&] { return any_node(system); });
     EXPECT_FALSE(report.law(law).holds()) << report;
   };
+  broken(TooMany{}, "there are as many as names");
   broken(PlainMass{}, "slopes by parameters are those of differences");
   broken(Doubled{}, "they are the ledger's");
   broken(HeldPlace{}, "slopes by the node are those of differences");

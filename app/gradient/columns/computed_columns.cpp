@@ -113,6 +113,8 @@ NamedText named_text(const std::string& word) {
   const std::size_t at = word.find('=');
   if (at == std::string::npos || at == 0 || at + 1 == word.size())
     throw GradientRefused(fmt::format("{}: give NAME=EXPRESSION", word));
+  if (word.substr(0, at).find(',') != std::string::npos)
+    throw GradientRefused(fmt::format("{}: a comma is none of a name, as names are listed by commas", word));
   return {word.substr(0, at), word.substr(at + 1)};
 }
 

@@ -42,6 +42,19 @@ template <int N> inline constexpr bool has_places<Pair<N>> = true;
 template <int N> inline constexpr bool has_places<VectorGroup<N>> = true;
 template <class... Gs> inline constexpr bool has_places<Product<Gs...>> = (has_places<Gs> && ...);
 
+/// Which of these places are angles from -pi to pi.
+template <class G> std::vector<bool> angles_of(const G& /*groupoid*/) {
+  return std::vector<bool>(ArrowFormat<G>::labels(ArrowFormat<G>::key).size(), false);
+}
+inline std::vector<bool> angles_of(const SE2& /*groupoid*/) { return {false, false, true}; }
+inline std::vector<bool> angles_of(const SO2& /*groupoid*/) { return {true}; }
+template <class... Gs> std::vector<bool> angles_of(const Product<Gs...>& /*groupoid*/) {
+  std::vector<bool> out;
+  const auto add = [&](const std::vector<bool>& more) { out.insert(out.end(), more.begin(), more.end()); };
+  (add(angles_of(Gs{})), ...);
+  return out;
+}
+
 inline void name_all(std::vector<GradientName>& out, const std::string& group, int count,
                      const std::vector<std::string>& labels) {
   for (int i = 0; i < count; ++i)
@@ -66,7 +79,8 @@ template <DiscreteSystem Sys> class ObservedColumns {
       const auto plain = numbers_without_slopes(system, value.initial, value.configuration);
       const std::vector<ObservedName> names = Sys::observed_names();
       for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto& [group, name] = names[i];
+        auto [group, name] = names[i];
+        if (is_recorded(presentation, group)) std::swap(group, name);  // as that column is called
         if (is_there(name)) continue;
         if (const auto found = plain.find(i); found != plain.end()) {
           without_.push_back({{group, name}, found->second});
@@ -111,6 +125,12 @@ template <DiscreteSystem Sys> class ObservedColumns {
   }
 
  private:
+  static bool is_recorded(const Presentation<Sys>& presentation, const std::string& name) {
+    return std::any_of(presentation.extras.begin(), presentation.extras.end(), [&](const ExtraColumns<Sys>& each) {
+      const auto& all = each.series.components;
+      return !each.series.on_arrows && all.size() == 1 && all.front() == name;
+    });
+  }
   bool is_there(const std::string& name) const {
     for (const auto* all : {&state_, &own_, &places_})
       if (std::any_of(all->begin(), all->end(), [&](const GradientName& each) { return each.name == name; }))
@@ -136,7 +156,8 @@ template <DiscreteSystem Sys> class ObservedColumns {
       };
       if (are_recorded(value.configuration, value.initial.object) &&
           are_recorded(system.groupoid.compose(value.configuration, onward), system.groupoid.target(onward)))
-        for (const std::string& label : presentation.position) places_.push_back({"position", label, true, true});
+        for (std::size_t i = 0; i < presentation.position.size(); ++i)
+          places_.push_back({"position", presentation.position[i], true, true, angles_of(G{})[i]});
     }
   }
 

@@ -189,6 +189,7 @@ double solve_from_guess(PredictedRuns& runs, const std::vector<Guessed>& unknown
 }  // namespace
 
 Fit fit_scene(const GradientSubject& scene, const std::vector<std::string>& files, const FitOptions& options) {
+  if (scene.cost) throw GradientRefused("a fit takes initial values; a path between two ends has no column t to fit");
   Fit fit;
   const GradientSubject subject = with_what_can_be_fitted(scene);
   fit.system = subject.system;

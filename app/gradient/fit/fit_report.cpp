@@ -70,12 +70,14 @@ std::string text_of(const Fit& fit) {
              ? "\n  as many numbers as unknowns: nothing is left over that would tell how large errors "
                "are but what --sigma says of all columns\n"
              : fmt::format("\n  what is left over: {:.4g} sigma, root mean square\n", fit.scale);
+  constexpr long few = 10;
   for (const Fit::Column& each : fit.columns)
     out += fmt::format("  {:{}}  {:.4g} over {}; each goes with the next by {:.2f}: {}\n", each.name, width, each.rms,
                        counted(std::size_t(each.count), "number"), each.correlation,
-                       each.exact() ? "rounding"
-                       : each.white ? "as independent errors do"
-                                    : "not as independent errors do, the model is another or the errors are");
+                       each.exact()       ? "rounding"
+                       : each.count < few ? "too few to tell anything by"
+                       : each.white       ? "as independent errors do"
+                                          : "not as independent errors do, the model is another or the errors are");
   if (!fit.left_out.empty()) out += fmt::format("  left out by --of: {}\n", fmt::join(fit.left_out, ", "));
   if (!fit.ignored.empty())
     out += fmt::format("  ignored, for they are none of what a run is fitted by (more of it by --column): {}\n",

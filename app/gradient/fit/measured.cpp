@@ -22,7 +22,6 @@ struct Nodes {
 Nodes nodes_of(const GradientSubject& subject) {
   if (subject.through_events && !subject.begins_through_events)
     throw GradientRefused("a fit takes runs without events, of bodies those that no event ends; leave out [[event]]");
-  if (subject.cost) throw GradientRefused("a fit takes initial values; a path between two ends has no column t to fit");
   const auto motion = subject.begin({}, {});
   const double start = motion->time();
   if (!motion->has_equal_steps()) return {start, 0, 0};

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -116,6 +117,9 @@ void PredictedRuns::predict(std::size_t run, std::size_t first, bool with_deriva
     if (!here || !std::isfinite(here->values(measured.observed))) return fail(run, course.motion());
     const auto at = Eigen::Index(first + i);
     predicted_(at) = here->values(measured.observed);
+    // An angle is as far off as the shorter way round.
+    if (subject_.observed[std::size_t(measured.observed)].is_angle)
+      predicted_(at) = measured.value + std::remainder(predicted_(at) - measured.value, 2 * std::numbers::pi);
     if (!with_derivatives) continue;
     const Eigen::RowVectorXd by = here->derivatives.row(measured.observed) * course.directions();
     derivatives_.block(at, Eigen::Index(run) * from_start, 1, from_start) = by.head(from_start);

@@ -18,7 +18,7 @@
 
 #include <lagroid/solvers/control/solve_control.hpp>
 #include <lagroid/solvers/control/testing/control_solution_laws.hpp>
-#include <lagroid/solvers/testing/symplectic_form.hpp>
+#include <lagroid/core/testing/symplectic_form.hpp>
 
 #include <algorithm>
 #include <cmath>

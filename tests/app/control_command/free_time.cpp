@@ -32,6 +32,14 @@ TEST_F(FreeTime, ADurationThatCostsNothingIsRefused) {
   EXPECT_NEAR(nlohmann::json::parse(drift.out).at("duration").get<double>(), 3, 1e-3);
 }
 
+// A car that pays for its turns alone takes ever wider ones.
+TEST_F(FreeTime, ADurationThatRunsAwayIsNamed) {
+  const Outcome wide = run(scene("shortest_way") + " --json --set 'parameters.cost=\"effort\"' --set solver.starts=2");
+  EXPECT_EQ(wide.code, 3) << wide.err;
+  EXPECT_NE(wide.err.find("the cost falls as the duration grows"), std::string::npos) << wide.err;
+  EXPECT_NE(wide.out.find("the cost falls as the duration grows"), std::string::npos) << wide.out;
+}
+
 // Back to where it stands, the shortest motion of a car is none; what is meant is the smallest circle.
 TEST_F(FreeTime, AMotionThatComesBackIsOneThatMoves) {
   const Outcome circle = run(scene("shortest_way") + " --json --set 'boundary.end=[0,0,0]'");

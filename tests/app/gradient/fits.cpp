@@ -8,7 +8,7 @@
 #include <gradient/uncertainty.hpp>
 #include <program.hpp>
 
-#include <lagroid/core/capabilities/velocity_start.hpp>
+#include <lagroid/core/derivatives/velocity_start.hpp>
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/run/motion/parameter_values.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
