@@ -64,17 +64,18 @@ class ExactGradients(unittest.TestCase):
     def test_of_a_free_body(self):
         of = case("C-rigidbody")["continuous"]
         scene = 'system = "rigid_body"\n[parameters]\ninertia = [1.0, 2.0, 3.0]\n[initial]\nmomentum = [0.8, 0.6, 1.1]\n'
-        end, found, _ = gradients("rigid_body", scene + '[time]\nmethod = "moser-veselov"\norder = 10\nstep = 0.05\nsteps = 80\n',
-                                  "final.momentum,final.configuration", "initial.momentum,parameters")
-        self.near(end[:3], of["M"])
-        self.near(found[:3], of["jacobian_M"])
-        attitude = end[3:].reshape(3, 3).T  # column by column
-        self.near(attitude, of["R"])
-        turns = []
-        for column in found[3:].T:
-            turn = attitude.T @ column.reshape(3, 3).T
-            turns.append([turn[2, 1], turn[0, 2], turn[1, 0]])
-        self.near(np.array(turns).T, of["jacobian_R_body"])
+        for method in (extrapolated, 'method = "moser-veselov"\norder = 10\n'):
+            end, found, _ = gradients("rigid_body", scene + "[time]\n" + method + "step = 0.05\nsteps = 80\n",
+                                      "final.momentum,final.configuration", "initial.momentum,parameters")
+            self.near(end[:3], of["M"])
+            self.near(found[:3], of["jacobian_M"])
+            attitude = end[3:].reshape(3, 3).T  # column by column
+            self.near(attitude, of["R"])
+            turns = []
+            for column in found[3:].T:
+                turn = attitude.T @ column.reshape(3, 3).T
+                turns.append([turn[2, 1], turn[0, 2], turn[1, 0]])
+            self.near(np.array(turns).T, of["jacobian_R_body"])
 
     def test_of_heavy_tops(self):
         for name, steps in (("C-heavytop-asym", 30), ("C-heavytop-lagrange", 40)):

@@ -96,6 +96,16 @@ class Observed(unittest.TestCase):
         found = self.checked("damped_pendulum", "damped_pendulum", "event.low.1.t,event.low.1.H,final.energy", *event)
         self.assertEqual(found["of"][-1], "final.H")
 
+    def test_kinks_have_none(self):
+        words = (examples / "pendulum.toml", "--set", "initial.position=[0.0]", "--set", "time.steps=3", "--of", "node.0.z", "--wrt", "initial.q")
+        for text in ("max(q,0)", "min(q,2*q)", "sign(q)", "abs(q)"):
+            told = gradients("pendulum", *words, "--column", f"z={text}")
+            self.assertEqual((told.returncode, len(told.stderr.splitlines())), (3, 1), (text, told.stdout))
+            self.assertIn("no finite derivative", told.stderr)
+        for text, slope in (("max(q,-1)", 1), ("min(q,q)", 1), ("max(q,1)", 0)):
+            found = json.loads(gradients("pendulum", *words, "--column", f"z={text}", "--json").stdout)
+            self.assertEqual(found["derivatives"], [[slope]])
+
     def test_what_has_no_derivative_says_why(self):
         for part, scene, name, why in (("rigid_body", "rigid_body", "final.A_w", "known up to its sign"),
                                        ("damped_pendulum", "damped_pendulum", "final.energy less work", "adds up along the run"),
@@ -152,12 +162,12 @@ class ErrorsOfRuns(unittest.TestCase):
             self.assertTrue((out / "trajectory.csv").exists())
             alone = run(of_part("pendulum"), "gradient", *scene, "--deviations", "initial.momentum=0.02,parameters.length=0.01")
             self.assertTrue(told.stdout.endswith(alone.stdout), told.stdout)
+            self.assertIn("converged", told.stdout[:-len(alone.stdout)])
             self.assertEqual((out / "errors.txt").read_text(), alone.stdout)
             # What cannot be carried is told before anything is run.
             told = run(of_part("pendulum"), "run", *scene, "--out", pathlib.Path(folder) / "none", "--deviations", "initial.zz=1")
             self.assertEqual((told.returncode, told.stdout, len(told.stderr.splitlines())), (2, "", 1), told.stderr)
             self.assertFalse((pathlib.Path(folder) / "none").exists())
-            self.assertIn("converged", told.stdout[:-len(alone.stdout)])
             told = run(of_part("pendulum"), "fit", *scene[:1], out / "trajectory.csv", *scene[1:], "--wrt", "parameters.length", "--json")
             file = pathlib.Path(folder) / "fit.json"
             file.write_text(told.stdout)

@@ -401,10 +401,17 @@ void bind_scenes(py::module_& module) {
       .def_property_readonly("interrupted", &RunResult::interrupted, "Whether Ctrl-C or SIGTERM ended it.")
       .def(
           "gradient",
-          [](const py::object& self, const py::kwargs& asked) {
+          [](const py::object& self, const py::object& of, const py::object& wrt, const py::object& columns,
+             const py::object& check, const py::object& states) {
+            py::dict asked;
+            for (const auto& [name, value] : {std::pair("of", of), std::pair("wrt", wrt), std::pair("columns", columns),
+                                              std::pair("check", check), std::pair("states", states)})
+              if (!value.is_none()) asked[name] = value;
             return py::module_::import("lagroid.studies").attr("gradient_of_run")(self, **asked);
           },
-          "Exact derivatives of the run: of, wrt, columns, check and states as lagroid.gradient takes them.")
+          py::kw_only(), py::arg("of") = py::none(), py::arg("wrt") = py::none(), py::arg("columns") = py::none(),
+          py::arg("check") = py::none(), py::arg("states") = py::none(),
+          "Exact derivatives of the run, as lagroid.gradient has them: of, wrt, columns, check and states are its.")
       .def("text", lagroid::text_report, "The report, as lagroid run prints it.")
       .def("json", lagroid::json_report, "The summary, as lagroid run --json prints it.")
       .def(

@@ -182,11 +182,11 @@ class RunResult:
     def gradient(
         self,
         *,
-        of: str | Sequence[str] = ...,
-        wrt: str | Sequence[str] = ...,
-        columns: Optional[Mapping[str, str]] = ...,
-        check: bool = ...,
-        states: int = ...,
+        of: Optional[str | Sequence[str]] = None,
+        wrt: Optional[str | Sequence[str]] = None,
+        columns: Optional[Mapping[str, str]] = None,
+        check: Optional[bool] = None,
+        states: Optional[int] = None,
     ) -> GradientTable: ...
     def text(self) -> str: ...
     def json(self) -> str: ...

@@ -35,6 +35,14 @@ double chain(double x, double y, double f, double by_x, double by_y) {
 
 bool is_less(double x, double y) { return at(x).value < at(y).value; }
 
+/// The one that was chosen among these; without a derivative where another is as large and goes another way.
+double unless_kinked(double chosen, const double* x, int count) {
+  for (int i = 0; i < count; ++i)
+    if (at(x[i]).value == at(chosen).value && at(x[i]).by != at(chosen).by)
+      return keep({at(chosen).value, along(std::nan(""), at(x[i]).by - at(chosen).by)});
+  return chosen;
+}
+
 double add(double x, double y) { return chain(x, y, at(x).value + at(y).value, 1, 1); }
 double subtract(double x, double y) { return chain(x, y, at(x).value - at(y).value, 1, -1); }
 double multiply(double x, double y) {
@@ -146,7 +154,7 @@ void define_functions(mu::Parser& parser) {
   });
   define("sign", [](double x) {
     const double a = at(x).value;
-    return constant(double(a > 0) - double(a < 0));
+    return a == 0 ? chain(x, 0, std::nan("")) : constant(double(a > 0) - double(a < 0));
   });
   define("rint", [](double x) { return constant(std::floor(at(x).value + 0.5)); });
   parser.DefineFun("atan2", [](double y, double x) {
@@ -163,8 +171,12 @@ void define_functions(mu::Parser& parser) {
     for (int i = 1; i < count; ++i) all = add(all, x[i]);
     return divide(all, constant(count));
   });
-  parser.DefineFun("min", [](const double* x, int count) { return *std::min_element(x, x + count, is_less); });
-  parser.DefineFun("max", [](const double* x, int count) { return *std::max_element(x, x + count, is_less); });
+  parser.DefineFun("min", [](const double* x, int count) {
+    return unless_kinked(*std::min_element(x, x + count, is_less), x, count);
+  });
+  parser.DefineFun("max", [](const double* x, int count) {
+    return unless_kinked(*std::max_element(x, x + count, is_less), x, count);
+  });
 }
 
 /// A number of the text, which is kept.

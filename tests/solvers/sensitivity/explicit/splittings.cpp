@@ -24,7 +24,7 @@ RunFrom<Kepler> orbit(double by) {
   return out;
 }
 RunFrom<RigidBody> body(double by) {
-  RunFrom<RigidBody> out{RigidBody(), {{}, {0.3 + 0.1 * by, 1.5, 0.4}}, {}, {}};
+  RunFrom<RigidBody> out{RigidBody(), {{}, {0.3 + 0.1 * by, 1.5, 0.4}}, {}, {"inertia"}};
   out.system.h = 0.1;
   out.configuration = SO3::exp(Vector<double, 3>(0.2, by, 0.1));
   return out;
@@ -59,10 +59,17 @@ TEST(SplittingSensitivities, AreSymplectic) {
   EXPECT_LT((a.transpose() * form * a - form).norm(), 1e-12 * a.squaredNorm());
 }
 
-/// The flows of the body's kinetic energy read its inertia as plain numbers.
+/// A spring whose force reads its stiffness as a plain number.
+struct PlainForce : MechanicalSystem<PlainForce, 1> {
+  double stiffness = 1;
+  static auto parameters() { return std::tuple(parameter("stiffness", &PlainForce::stiffness, "N/m", "of a spring")); }
+  static double mass() { return 1; }
+  template <class S> S potential(const Vector<S, 1>& q) const { return q(0) * q(0) * (varied<S>(stiffness) * 0.5); }
+  template <class S> Vector<S, 1> gradient(const Vector<S, 1>& q) const { return q * S(stiffness); }
+};
 TEST(SplittingSensitivities, RefuseAParameterThatFlowsReadAsAPlainNumber) {
-  RunFrom<RigidBody> from = body(0);
-  from.names = {"inertia"};
+  const State<Pair<1>> start{Vector<double, 1>(1.0), Vector<double, 1>(0.5)};
+  const RunFrom<PlainForce> from{PlainForce(), start, Pair<1>::unit(start.object), {"stiffness"}};
   const auto motion = by(compositions::suzuki)(from);
   ASSERT_TRUE(motion->advance().converged());
   EXPECT_THROW(motion->linearise(), WithoutDerivative);
