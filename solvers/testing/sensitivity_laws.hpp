@@ -21,9 +21,9 @@
 #include <lagroid/core/noether.hpp>
 #include <lagroid/core/testing/groupoid_laws.hpp>
 #include <lagroid/core/testing/property.hpp>
+#include <lagroid/core/testing/symplectic_form.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 #include <lagroid/solvers/testing/momentum_laws.hpp>
-#include <lagroid/core/testing/symplectic_form.hpp>
 
 #include <algorithm>
 #include <cmath>

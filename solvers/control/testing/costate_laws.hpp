@@ -16,9 +16,9 @@
 /// inequalities are active that were not, or the other way round, nothing is said. Requires a solution that converged,
 /// of one phase in a given time between given ends, without conditions on nodes. Returns a LawReport; nothing throws.
 
+#include <lagroid/core/testing/symplectic_form.hpp>
 #include <lagroid/solvers/control/solve_control.hpp>
 #include <lagroid/solvers/control/testing/control_solution_laws.hpp>
-#include <lagroid/core/testing/symplectic_form.hpp>
 
 #include <algorithm>
 #include <cmath>
