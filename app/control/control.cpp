@@ -59,8 +59,7 @@ std::string why_it_ran_away(const Section& scene, const ControlResult& found) {
   if (!(guess > 0) || !(reached > much * guess)) return "";
   return fmt::format(
       "the cost falls as the duration grows, from a first guess of {:.4g} s to {:.3g} s, and nothing bounds it: let "
-      "time "
-      "cost something (parameters.cost = \"time\"), or give the duration (horizon.free = false)",
+      "time cost something (parameters.cost = \"time\"), or give the duration (horizon.free = false)",
       guess, reached);
 }
 
@@ -114,9 +113,9 @@ int control(const ControlCommandOptions& options) {
     return exit_interrupted;
   }
   if (found.report.converged()) return code_after_writing(0, options.scene);
-  complain(fmt::format("{}: {}: {}{}{}", options.scene, to_string(found.report.status), found.report.message,
-                       ran_away.empty() ? what_first(found) : "",
-                       ran_away.empty() ? keys_of_starts(found.report.status) : ""));
+  std::string more;
+  if (ran_away.empty()) more = fmt::format("{}{}", what_first(found), keys_of_starts(found.report.status));
+  complain(fmt::format("{}: {}: {}{}", options.scene, to_string(found.report.status), found.report.message, more));
   return exit_failed;
 }
 

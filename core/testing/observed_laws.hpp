@@ -2,8 +2,8 @@
 /// Numbers that a system observes of its nodes (core/capabilities/observed_numbers.hpp) as properties that a user's own
 /// system runs by naming itself: they are what the ledger watches, and their derivatives are those of the numbers.
 ///
-///     const laws::LawReport report = laws::observed_laws(system, [] { return
-///     laws::ObservedState<Pendulum>{draw_state()}; });
+///     const auto draw = [] { return laws::ObservedState<Pendulum>{draw_state()}; };
+///     const laws::LawReport report = laws::observed_laws(system, draw);
 ///
 /// Requires draw(), nodes of the system's motions. Returns a report with one entry a law, relative to the size of the
 /// numbers; throws nothing.

@@ -63,14 +63,14 @@ struct RowScales {
   Eigen::ArrayXd most;         ///< the largest change of each by a column's size
 };
 
-constexpr double known = 0.1;  ///< to so much of the largest in its row a difference tells something
-constexpr double well_known = 1e-4;
-constexpr double agreed = 1e-5;   ///< of that: differences that are off by less are no contradiction
-constexpr double settled = 1e-9;  ///< of that: no others are tried
+constexpr double known = 0.1;        ///< to so much of the largest in its row a difference tells something
+constexpr double well_known = 1e-4;  ///< what a difference of the narrowest is to be known to
+constexpr double agreed = 1e-5;      ///< of that: differences that are off by less are no contradiction
+constexpr double settled = 1e-9;     ///< of that: no others are tried
 
+constexpr double usual = 2e-3;  ///< width of a difference, in sizes of its number
 /// Of differences, one after another: of the usual width, and narrower ones. Where some row is steep, or what it does
 /// not show, that changes by its own size where the number changes by less than its.
-constexpr double usual = 2e-3;
 std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows, double size, double rate) {
   const double steepest = size * std::max(rate, (rows.scales > 0).select(exact.abs() / rows.scales, 0.0).maxCoeff());
   std::vector<double> out{usual * size};

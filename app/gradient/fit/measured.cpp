@@ -131,9 +131,13 @@ class Reader {
     for (const GradientName& each : subject_.observed) out.push_back(each.name);
     return out;
   }
+  auto observed_as(const std::string& name) const {
+    return std::find_if(subject_.observed.begin(), subject_.observed.end(),
+                        [&](const GradientName& each) { return each.name == name; });
+  }
   int number_of(const std::string& name) const {
-    for (int i = 0; i < int(subject_.observed.size()); ++i)
-      if (subject_.observed[std::size_t(i)].name == name) return i;
+    const auto found = observed_as(name);
+    if (found != subject_.observed.end()) return int(found - subject_.observed.begin());
     throw GradientRefused(fmt::format("{}: no such column of the run; there are {}", name, fmt::join(names(), ", ")));
   }
   std::size_t column_of(const std::string& name) {
@@ -145,8 +149,7 @@ class Reader {
   }
   /// The column to be fitted of that name, if there is one.
   std::optional<std::size_t> wanted(const std::string& name) {
-    const auto known = std::find_if(subject_.observed.begin(), subject_.observed.end(),
-                                    [&](const GradientName& each) { return each.name == name; });
+    const auto known = observed_as(name);
     const bool is_known = known != subject_.observed.end();
     const bool is_named = std::find(options_.columns.begin(), options_.columns.end(), name) != options_.columns.end();
     // What is computed of the state says nothing that the state does not.
