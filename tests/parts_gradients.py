@@ -360,7 +360,7 @@ kick = ["0.9*a.px", "-0.1*b.py", "0", "0.02*a.px", "0", "0"]
         told = run(of_part("bodies"), "gradient", scene, "--check", "--json")
         self.assertEqual(told.returncode, 0, told.stderr)
         found = json.loads(told.stdout)
-        self.assertEqual(len(found["by"]), 92)
+        self.assertEqual(len(found["by"]), 96)
         self.assertGreater(found["digits_agreed"], 8)
 
     def test_gradients_of_bodies_are_of_the_scene_as_it_is_edited(self):
@@ -385,6 +385,22 @@ kick = ["0.9*a.px", "-0.1*b.py", "0", "0.02*a.px", "0", "0"]
                    "final.momentum,final.position", "--wrt", "parameters", "--check", "--json")
         self.assertEqual(told.returncode, 0, told.stderr)
         self.assertGreater(json.loads(told.stdout)["digits_agreed"], 8)
+
+    def test_places_of_joints_and_what_nobody_wrote_have_derivatives(self):
+        for scene, steps, numbers in (("three_links", 40, ("joint.0.place", "joint.1.place", "joint.2.place", "effect.0.acceleration")),
+                                      ("trebuchet", 700, ("beam.pivot", "effect.0.acceleration")), ("six_bar", 20, ("joint.3.place.0",))):
+            told = run(of_part("bodies"), "gradient", examples / f"{scene}.toml", "--set", f"time.steps={steps}", "--of", "final.position,final.momentum", "--wrt",
+                       ",".join(f"parameters.{number}" for number in numbers), "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertEqual(found["contradicted"], [])
+            self.assertGreater(found["digits_agreed"], 8, scene)
+            self.assertGreater(max(abs(x) for row in found["derivatives"] for x in row), 1e-3)
+        # By a place of a joint both of its points move: together with all other joints and all starts, the whole scene does.
+        told = run(of_part("bodies"), "gradient", examples / "three_links.toml", "--set", "time.steps=40", "--of", "final.upper.x,final.upper.px",
+                   "--wrt", "initial.position,parameters.joint.0.place.0,parameters.joint.0.points.0", "--json")
+        self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+        self.assertIn("NAME.place moves both points", told.stderr)
 
     def test_numbers_that_tear_joints_have_no_derivative(self):
         for scene, number, why in (("three_links", "joint.0.points.0.0", "a scene with another one is refused (joint.0.points"),

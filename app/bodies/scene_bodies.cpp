@@ -25,15 +25,14 @@ KeyOf<NumberArray> vector_key(std::string name, std::string unit, std::string me
 }
 
 template <class S> S BasicSceneBodies<S>::varied_number(const std::string& key, double x) const {
+  S out = x;
   if constexpr (std::is_same_v<S, VariedNumber>)
     for (const VariedAt& each : varied)
       if (each.path == reads + "." + key) {
         each.is_read = true;
-        S out = each.number;
-        out.value = x;
-        return out;
+        out += each.number - each.number.value;
       }
-  return x;
+  return out;
 }
 
 template <class S>

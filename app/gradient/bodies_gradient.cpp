@@ -77,7 +77,8 @@ multibody::WriteScene write_with(const Section& scene, const std::vector<SceneNu
   return [scene, numbers, timed](const std::vector<V>& x) {
     std::vector<VariedAt> varied;
     for (std::size_t i = 0; i < x.size(); ++i)
-      if (!multibody::stays_zero(x[i] - x[i].value)) varied.push_back({numbers[i].path, x[i]});
+      if (!multibody::stays_zero(x[i] - x[i].value))
+        for (VariedAt& each : numbers[i].varied(x[i])) varied.push_back(std::move(each));
     const auto bodies = std::make_shared<VariedBodies>(read_varied_scene(scene, varied));
     return multibody::WrittenScene{std::move(bodies->scene),
                                    [=](const ObservedScene& node) { return observed(*bodies, node, timed); },
@@ -172,8 +173,9 @@ std::string why_not_changed(const Section& scene, const SceneNumber& number,
     } catch (const SceneError& error) {
       why = fmt::format(
           "a scene with another one is refused ({}); what follows from the start, as a length that is "
-          "not given, changes with it",
-          error.problem());
+          "not given, changes with it{}",
+          error.problem(),
+          number.name.find(".points.") == std::string::npos ? "" : ", and NAME.place moves both points of a joint");
     }
   }
   return why;
@@ -181,9 +183,10 @@ std::string why_not_changed(const Section& scene, const SceneNumber& number,
 
 }  // namespace
 
-std::optional<GradientSubject> bodies_gradient(const Section& scene) {
-  if (!scene.has(keys::bodies)) return std::nullopt;
-  const BodiesScene read = read_bodies(scene, {});
+std::optional<GradientSubject> bodies_gradient(const Section& given) {
+  if (!given.has(keys::bodies)) return std::nullopt;
+  const BodiesScene read = read_bodies(given, {});
+  const Section scene = with_constants(given);
   if (read.options.tolerance > 0)
     scene.section("solver", "")
         .fail("tolerance", "derivatives are of steps that are solved to round-off; leave it out");
@@ -215,8 +218,10 @@ std::optional<GradientSubject> bodies_gradient(const Section& scene) {
   out.observed.push_back({"energy", "energy"});
   if (controlled) out.observed.push_back({"time", "t"});
   name_start(motion, bodies, out);
-  std::vector<SceneNumber> numbers;
-  for (const SceneNumber& number : numbers_to_differentiate(scene)) {
+  std::vector<SceneNumber> numbers, offered = numbers_to_differentiate(scene);
+  for (SceneNumber& number : places_of_joints(scene, read_scene_bodies(scene, false)))
+    offered.push_back(std::move(number));
+  for (const SceneNumber& number : offered) {
     if (const std::string why = why_not_changed(scene, number, begun_singly); !why.empty()) {
       out.refused.emplace_back("parameters." + number.name, why);
       continue;
