@@ -52,7 +52,7 @@ class Fits(unittest.TestCase):
             # What is not used is told, and why.
             self.assertEqual((found["left_out"], found["ignored"]), (["p"], ["temperature"]))
             told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", data, "--of", "q", "--wrt", "initial, parameters.length")
-            self.assertIn("left out by --of: p\n", told.stdout)
+            self.assertIn("not fitted, as --of can choose: p\n", told.stdout)
             self.assertRegex(told.stdout, "ignored, for .*: temperature\n")
             # So are gaps.
             told = run(of_part("pendulum"), "fit", examples / "pendulum.toml", data, "--wrt", "parameters.length")

@@ -1,12 +1,22 @@
 #!/usr/bin/env python3
 """`lagroid gradient` of steps that vary, of explicit ones, of reduced runs and of boundary values: parts_gradients.py BIN EXAMPLES, as parts.py."""
 import json
+import math
 import pathlib
 import sys
 import tempfile
 import unittest
 
 from parts import examples, of_part, rows_of, run
+
+
+def turned(rotation, x):
+    """A vector, turned by a rotation vector (Rodrigues)."""
+    angle = math.hypot(*rotation)
+    k = [each / angle for each in rotation]
+    along = sum(a * b for a, b in zip(k, x))
+    cross = [k[(i + 1) % 3] * x[(i + 2) % 3] - k[(i + 2) % 3] * x[(i + 1) % 3] for i in range(3)]
+    return [a * math.cos(angle) + b * math.sin(angle) + c * along * (1 - math.cos(angle)) for a, b, c in zip(x, cross, k)]
 
 
 class Gradients(unittest.TestCase):
@@ -400,7 +410,82 @@ kick = ["0.9*a.px", "-0.1*b.py", "0", "0.02*a.px", "0", "0"]
         told = run(of_part("bodies"), "gradient", examples / "three_links.toml", "--set", "time.steps=40", "--of", "final.upper.x,final.upper.px",
                    "--wrt", "initial.position,parameters.joint.0.place.0,parameters.joint.0.points.0", "--json")
         self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
-        self.assertIn("NAME.place moves both points", told.stderr)
+        self.assertIn("by NAME.place both points of a joint move", told.stderr)
+
+    def test_places_of_joints_move_together(self):
+        attitude, arm, by = (0.4, -0.3, 0.8), (0.3, -0.2, 0.5), (0.02, 0.01, -0.015)
+        at = turned(attitude, arm)
+        with tempfile.TemporaryDirectory() as folder:
+            scene, out = pathlib.Path(folder) / "hung.toml", pathlib.Path(folder) / "moved"
+            scene.write_text(f"""
+[[body]]
+kind = "rigid"
+name = "plate"
+mass = 1.3
+inertia = [0.2, 0.25, 0.3]
+position = [0, 0, 0]
+attitude = {list(attitude)}
+[[joint]]
+kind = "ball"
+name = "pin"
+between = ["ground", "plate"]
+points = [{at}, {list(arm)}]
+[[effect]]
+kind = "gravity"
+[time]
+step = 0.01
+steps = 60
+[output]
+every = 1
+""")
+            # Each of the three numbers of the pin in space changes all numbers of its point in the plate, which is turned.
+            moved = [x + y for x, y in zip(at, by)]
+            in_plate = [x + y for x, y in zip(arm, turned([-x for x in attitude], by))]
+            told = run(of_part("bodies"), "run", scene, "--set", f"joint.0.points=[{moved},{in_plate}]", "--out", out)
+            self.assertEqual(told.returncode, 0, told.stderr)
+            told = run(of_part("bodies"), "fit", scene, out / "trajectory.csv", "--wrt", "parameters.pin.place", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            unknowns = json.loads(told.stdout)["unknowns"]
+            self.assertEqual([each["name"] for each in unknowns], [f"parameters.pin.place.{k}" for k in range(3)])
+            for unknown, expected in zip(unknowns, moved):
+                self.assertAlmostEqual(unknown["value"], expected, delta=1e-8)
+
+    def test_numbers_of_two_tables_of_one_name_are_told_apart(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "twice.toml"
+            scene.write_text("""
+[[body]]
+kind = "rigid"
+name = "plate"
+mass = 1.3
+inertia = [0.2, 0.25, 0.3]
+position = [0, 0, 1]
+[[body]]
+kind = "chain"
+name = "rope"
+links = 2
+mass = 0.2
+length = 0.5
+on = "plate"
+at = [0.1, 0, 0]
+[[effect]]
+kind = "force"
+name = "rope"
+body = "plate"
+at = [0, 0.2, 0]
+force = [0, 0, 1]
+[time]
+step = 0.01
+steps = 30
+""")
+            words = ("gradient", scene, "--of", "final.position,final.spin", "--wrt")
+            found = {}
+            for name in ("rope.at.0", "effect.0.at.0"):
+                told = run(of_part("bodies"), *words, f"parameters.{name}", "--check", "--json")
+                self.assertEqual(told.returncode, 0, told.stderr)
+                found[name] = json.loads(told.stdout)
+                self.assertEqual(found[name]["contradicted"], [])
+            self.assertNotEqual(found["rope.at.0"]["derivatives"], found["effect.0.at.0"]["derivatives"])
 
     def test_numbers_that_tear_joints_have_no_derivative(self):
         for scene, number, why in (("three_links", "joint.0.points.0.0", "a scene with another one is refused (joint.0.points"),

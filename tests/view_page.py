@@ -359,7 +359,7 @@ class Page(unittest.TestCase):
 def ended_by_the_browser(result):
     """Names of the tests that ended with an error of the browser's own, a tab that crashed or no answer, which says nothing of
     the page: all that did not pass, or none."""
-    of_browsers = ("WebDriverException", "TimeoutException", "InvalidSessionIdException")
+    of_browsers = ("WebDriverException", "TimeoutException", "InvalidSessionIdException", "MaxRetryError", "ProtocolError")
     if result.failures or not all(any(f".{name}: " in trace for name in of_browsers) for _, trace in result.errors):
         return []
     return sorted({getattr(test, "test_case", test).id() for test, _ in result.errors})

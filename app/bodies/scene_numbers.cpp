@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <variant>
 
 namespace lagroid::app {
@@ -16,8 +17,8 @@ bool is_parameter(std::string_view kind, std::string_view key) {
 }
 /// What a body is made of, beside its state.
 bool is_differentiated(std::string_view kind, std::string_view key) {
-  return is_parameter(kind, key) || key == "length" || key == "centre" || key == "pivot" || key.starts_with("ground_") ||
-         (kind == "body" && key == "at");
+  return is_parameter(kind, key) || key == "length" || key == "centre" || key == "pivot" ||
+         key.starts_with("ground_") || (kind == "body" && key == "at");
 }
 
 /// The numbers at keys that are wanted, of tables with a name; or, of the whole scene, of all, and points too.
@@ -135,12 +136,14 @@ std::vector<VariedAt> SceneNumber::varied(const VariedNumber& number) const {
 }
 
 Section scene_with(const Section& scene, const std::vector<SceneNumber>& numbers) {
-  std::vector<Change> changes;
-  for (const SceneNumber& number : numbers) {
-    if (number.shared.empty()) changes.push_back({number.path, {number.value}});
+  std::map<std::string, double> values;
+  for (const SceneNumber& number : numbers)
+    if (number.shared.empty()) values[number.path] = number.value;
+  for (const SceneNumber& number : numbers)
     for (const SharedChange& each : number.shared)
-      changes.push_back({each.path, {each.value + each.rate * (number.value - number.given)}});
-  }
+      values.try_emplace(each.path, each.value).first->second += each.rate * (number.value - number.given);
+  std::vector<Change> changes;
+  for (const auto& [path, value] : values) changes.push_back({path, {value}});
   return scene.with(changes);
 }
 

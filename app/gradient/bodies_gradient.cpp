@@ -17,7 +17,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -154,18 +156,19 @@ std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, con
   return out;
 }
 
-/// Why there is no derivative by a number: scenes with a little more and with a little less of it are none, or joints
-/// that hold would not. Empty where there is one.
-std::string why_not_changed(const Section& scene, const SceneNumber& number,
+/// Why there is no derivative by these numbers, changed together: scenes with a little more and with a little less of
+/// them are none, or joints that hold would not. Empty where there is one.
+std::string why_not_changed(const Section& scene, const std::vector<SceneNumber>& numbers,
                             const std::function<Multibody(const Section&)>& begun) {
+  std::vector<std::string> names;
+  for (const SceneNumber& number : numbers) names.push_back(number.name);
   std::string why;
-  const double by = 1e-3 * (number.value == 0 ? 1 : number.value);
-  for (const double change : {by, -by}) {
-    SceneNumber other = number;
-    other.value += change;
+  for (const double share : {1e-3, -1e-3}) {
+    std::vector<SceneNumber> others = numbers;
+    for (SceneNumber& other : others) other.value += share * (other.value == 0 ? 1 : other.value);
     try {
-      begun(scene_with(scene, {other}));
-      LinearisedScene first(begun(scene), {number.name}, {number.value}, write_with(scene, {number}));
+      begun(scene_with(scene, others));
+      LinearisedScene first(begun(scene), names, values_of(numbers), write_with(scene, numbers));
       if (first.advance().converged()) first.linearise();
       return "";
     } catch (const WithoutDerivative& refusal) {
@@ -173,12 +176,57 @@ std::string why_not_changed(const Section& scene, const SceneNumber& number,
     } catch (const SceneError& error) {
       why = fmt::format(
           "a scene with another one is refused ({}); what follows from the start, as a length that is "
-          "not given, changes with it{}",
-          error.problem(),
-          number.name.find(".points.") == std::string::npos ? "" : ", and NAME.place moves both points of a joint");
+          "not given, changes with it",
+          error.problem());
     }
   }
   return why;
+}
+
+/// All that a scene of bodies may be differentiated by, each with a name of its own: what has that of another before it
+/// is called by where it stands.
+std::vector<SceneNumber> offered_numbers(const Section& scene) {
+  std::vector<SceneNumber> out = numbers_to_differentiate(scene);
+  for (SceneNumber& number : places_of_joints(scene, read_scene_bodies(scene))) out.push_back(std::move(number));
+  std::set<std::string> names;
+  for (SceneNumber& number : out)
+    if (!names.insert(number.name).second && !number.path.empty()) names.insert(number.name = number.path);
+  return out;
+}
+
+/// Asks of many at once which have a derivative, of those that do not bear upon each other: masses and inertias, which
+/// no joint reads, and places of joints, by each of which both points move.
+void ask_for_derivatives(const Section& scene, const std::function<Multibody(const Section&)>& begun,
+                         GradientSubject& out, std::vector<SceneNumber>& numbers) {
+  const std::vector<SceneNumber> offered = offered_numbers(scene);
+  const auto is_place = [](const SceneNumber& number) { return !number.shared.empty(); };
+  const auto is_mass = [](const SceneNumber& number) {
+    return number.path.starts_with("body.") &&
+           (number.path.ends_with(".mass") || number.path.find(".inertia") != std::string::npos);
+  };
+  const auto all_have = [&](const auto& are_meant) {
+    std::vector<SceneNumber> some;
+    std::copy_if(offered.begin(), offered.end(), std::back_inserter(some), are_meant);
+    return !some.empty() && why_not_changed(scene, some, begun).empty();
+  };
+  const bool masses = all_have(is_mass), places = all_have(is_place);
+  const auto has_place = [&](const SceneNumber& number) {
+    const std::string joint = number.name.substr(0, number.name.find(".points."));
+    return joint.size() < number.name.size() &&
+           std::any_of(offered.begin(), offered.end(),
+                       [&](const SceneNumber& each) { return each.name == joint + ".place.0"; });
+  };
+  for (const SceneNumber& number : offered) {
+    const bool is_known = (masses && is_mass(number)) || (places && is_place(number));
+    if (std::string why = is_known ? "" : why_not_changed(scene, {number}, begun); !why.empty()) {
+      if (has_place(number)) why += ", and by NAME.place both points of a joint move";
+      out.refused.emplace_back("parameters." + number.name, std::move(why));
+      continue;
+    }
+    numbers.push_back(number);
+    out.parameters.push_back({"parameters", number.name});
+    out.sizes.push_back(number.value);
+  }
 }
 
 }  // namespace
@@ -188,11 +236,11 @@ std::optional<GradientSubject> bodies_gradient(const Section& given) {
   const BodiesScene read = read_bodies(given, {});
   const Section scene = with_constants(given);
   if (read.options.tolerance > 0)
-    scene.section("solver", "")
+    given.section("solver", "")
         .fail("tolerance", "derivatives are of steps that are solved to round-off; leave it out");
   const bool controlled = read.options.controlled;
   if (controlled && !read.extent.events.empty())
-    scene.fail("event",
+    given.fail("event",
                "of scenes of bodies there are no derivatives through events by controlled steps; leave out the "
                "events, or time.mode");
   const double step = read.to_check.step;
@@ -218,18 +266,8 @@ std::optional<GradientSubject> bodies_gradient(const Section& given) {
   out.observed.push_back({"energy", "energy"});
   if (controlled) out.observed.push_back({"time", "t"});
   name_start(motion, bodies, out);
-  std::vector<SceneNumber> numbers, offered = numbers_to_differentiate(scene);
-  for (SceneNumber& number : places_of_joints(scene, read_scene_bodies(scene, false)))
-    offered.push_back(std::move(number));
-  for (const SceneNumber& number : offered) {
-    if (const std::string why = why_not_changed(scene, number, begun_singly); !why.empty()) {
-      out.refused.emplace_back("parameters." + number.name, why);
-      continue;
-    }
-    numbers.push_back(number);
-    out.parameters.push_back({"parameters", number.name});
-    out.sizes.push_back(number.value);
-  }
+  std::vector<SceneNumber> numbers;
+  ask_for_derivatives(scene, begun_singly, out, numbers);
   const bool tied = motion.rows() > 0;
   if (tied)
     out.notes.emplace_back(

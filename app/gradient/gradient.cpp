@@ -236,7 +236,7 @@ int gradient_program(int argc, char** argv, ProgramParts parts, const std::vecto
   app.add_option(
          "--states", options.budget.states,
          "go backward, with at most so many states kept on the way (default: forward or backward as is cheaper, "
-         "with 2 sqrt(steps))")
+         "with 2 sqrt(steps)); the fewer, the more often steps are solved, with 1 half their number squared")
       ->check(CLI::Range(1L, 1'000'000'000L))
       ->excludes(deviations)
       ->excludes(covariance);

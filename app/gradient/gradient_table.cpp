@@ -1,5 +1,6 @@
 #include "gradient_table.hpp"
 
+#include "../reading/messages.hpp"
 #include "boundary/boundary_cost.hpp"
 #include "checks/differences.hpp"
 #include "checks/run_growth.hpp"
@@ -179,8 +180,13 @@ std::vector<int> chosen_names(const std::vector<GradientName>& all, const std::s
   for (const GradientName& each : all)
     for (const std::string& one : {each.group, each.name})
       if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
-  throw GradientRefused(
-      fmt::format("{}: nothing of that name is differentiable here; there are {}", word, fmt::join(names, ", ")));
+  const std::string guess = nearest(name, names);
+  constexpr std::size_t many = 40;
+  const std::size_t more = names.size() - std::min(many, names.size());
+  names.resize(names.size() - more);
+  throw GradientRefused(fmt::format("{}: nothing of that name is differentiable here{}; there are {}{}", word,
+                                    guess.empty() ? "" : fmt::format("; did you mean \"{}\"?", guess),
+                                    fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
 std::vector<int> chosen_rows(const GradientSubject& subject, const std::string& word, const std::string& name) {

@@ -1,8 +1,11 @@
-// What the gradient of a chain's end by all its masses and lengths costs, in runs.
+// What derivatives of a run cost, in runs: a chain's end by all its masses and lengths, and matrices of small systems
+// and of chains.
 #include "../cases/chain_case.hpp"
 #include "../report/comparison.hpp"
 
 #include <lagroid/solvers/sensitivity/propagate.hpp>
+#include <lagroid/solvers/sensitivity/sensitivities.hpp>
+#include <lagroid/systems/kepler.hpp>
 #include <lagroid/systems/multibody/effects.hpp>
 #include <lagroid/systems/multibody/joints.hpp>
 #include <lagroid/systems/multibody/sensitivity/linearised_scene.hpp>
@@ -48,17 +51,20 @@ constexpr long steps = 10'000;
 std::vector<double> numbers_of(int links) { return std::vector<double>(std::size_t(2 * links), 1.0 / links); }
 Multibody chain_of(int links) { return {Numbered{links}(numbers_of(links)), 2e-2 / links}; }
 
-LinearisedScene linearised_chain(int links) {
+/// By all its numbers, or by none.
+LinearisedScene linearised_chain(int links, bool by_numbers = true) {
   std::vector<std::string> names;
-  for (int k = 0; k < 2 * links; ++k) names.push_back(std::to_string(k));
+  for (int k = 0; by_numbers && k < 2 * links; ++k) names.push_back(std::to_string(k));
   const auto height = [](const ObservedScene& node) {
     VariedNumbers out(1);
     out(0) = node.at.x[node.momentum.size() - 1](2);
     return out;
   };
-  return {chain_of(links), names, numbers_of(links), [links, height](const auto& x) {
-            return WrittenScene{Numbered{links}(x), height};
-          }};
+  const std::vector<double> all = numbers_of(links);
+  return {
+      chain_of(links), names, by_numbers ? all : std::vector<double>(), [links, height, all](const auto& x) {
+        return WrittenScene{Numbered{links}(x.empty() ? std::vector<VariedNumber>(all.begin(), all.end()) : x), height};
+      }};
 }
 
 /// So many steps from the start, each time.
@@ -74,13 +80,21 @@ Subject from_start(std::string group, std::string name, Motion begun, const Go& 
           reference};
 }
 
+template <class Motion> bool goes(Motion& motion, long count) {
+  bool good = true;
+  for (long k = 0; k < count && good; ++k) good = motion.advance().converged();
+  return good;
+}
+/// The derivatives of the end along these directions.
+template <class Motion> bool goes_forward(Motion& motion, long count, const Eigen::MatrixXd& directions) {
+  return propagate_forward(motion, count, directions).converged();
+}
+
 void add_chain(int links, std::vector<Subject>& out) {
   const std::string group = fmt::format("chain of {} links, {} steps", links, steps);
   const auto run = [start = chain_of(links).state()](Multibody& motion, long count) {
     motion.restore(start);
-    bool good = true;
-    for (long k = 0; k < count && good; ++k) good = motion.advance().converged();
-    return good;
+    return goes(motion, count);
   };
   out.push_back(from_start(group, "a run", chain_of(links), run, /*reference=*/true));
   const auto gradient = [start = linearised_chain(links).save()](StateBudget budget) {
@@ -95,11 +109,53 @@ void add_chain(int links, std::vector<Subject>& out) {
                            gradient(StateBudget::logarithmic(steps))));
 }
 
+void add_matrix_of_chain(int links, std::vector<Subject>& out) {
+  const std::string group = fmt::format("transition matrix, chain of {} links, {} steps", links, steps);
+  const auto run = [start = chain_of(links).state()](Multibody& motion, long count) {
+    motion.restore(start);
+    return goes(motion, count);
+  };
+  out.push_back(from_start(group, "a run", chain_of(links), run, /*reference=*/true));
+  const auto matrix = [start = linearised_chain(links, false).save()](LinearisedScene& motion, long count) {
+    motion.restore(start);
+    return goes_forward(motion, count, Eigen::MatrixXd::Identity(motion.states(), motion.states()));
+  };
+  out.push_back(from_start(group, fmt::format("{} directions", 6 * links), linearised_chain(links, false), matrix));
+}
+
+/// Of Kepler's problem, by its start and the strength of the attraction.
+void add_matrix_of_kepler(std::vector<Subject>& out) {
+  const std::string group = fmt::format("transition matrix, Kepler, {} steps", steps);
+  Kepler kepler;
+  kepler.h = 0.02;
+  const State<Kepler::GroupoidType> start = {{1, 0}, {0, 1.2}};
+  const auto linearised = [kepler, start] {
+    return std::make_shared<LinearisedMotionOf<Kepler>>(
+        kepler, detail::newton_integrator(kepler, start, {}), std::vector<std::string>{"strength"},
+        [](const ObservedNode<Kepler>& node) { return VariedVector(node.momentum); });
+  };
+  using Motion = std::shared_ptr<LinearisedMotionOf<Kepler>>;
+  const std::vector<double> begun = linearised()->save();
+  const auto run = [begun](const Motion& motion, long count) {
+    motion->restore(begun);
+    return goes(*motion, count);
+  };
+  out.push_back(from_start(group, "a run", linearised(), run, /*reference=*/true));
+  const auto matrix = [begun](const Motion& motion, long count) {
+    motion->restore(begun);
+    const int all = motion->states() + motion->parameters();
+    return goes_forward(*motion, count, Eigen::MatrixXd::Identity(all, all));
+  };
+  out.push_back(from_start(group, "5 directions", linearised(), matrix));
+}
+
 }  // namespace
 
 std::vector<Subject> scene_gradient_subjects() {
   std::vector<Subject> out;
   for (const int links : {10, 50, 200}) add_chain(links, out);
+  add_matrix_of_kepler(out);
+  for (const int links : {10, 50}) add_matrix_of_chain(links, out);
   return out;
 }
 

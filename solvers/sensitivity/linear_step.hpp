@@ -19,6 +19,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include <vector>
+
 namespace lagroid {
 
 /// The derivative of a step, as its matrix acts and as its transpose does.
@@ -30,6 +32,9 @@ class StepDerivative {
   virtual Eigen::MatrixXd forward(const Eigen::MatrixXd& directions) const = 0;
   /// The gradients by x of functions of x', given those by x'.
   virtual Eigen::MatrixXd backward(const Eigen::MatrixXd& gradients) const = 0;
+  /// The same in place: of small steps without memory of their own.
+  virtual void go_forward(Eigen::MatrixXd& directions) const { directions = forward(directions); }
+  virtual void go_back(Eigen::MatrixXd& gradients) const { gradients = backward(gradients); }
 };
 
 class LinearStep final : public StepDerivative {
@@ -46,11 +51,22 @@ class LinearStep final : public StepDerivative {
 
   Eigen::MatrixXd forward(const Eigen::MatrixXd& directions) const override;
   Eigen::MatrixXd backward(const Eigen::MatrixXd& gradients) const override;
+  void go_forward(Eigen::MatrixXd& directions) const override;
+  void go_back(Eigen::MatrixXd& gradients) const override;
 
  private:
+  bool is_small() const;
+  template <class Count> bool factor_small(Count equations);
+  double* memory(Eigen::Index size) const;
+  Eigen::MatrixXd forward_large(const Eigen::MatrixXd& directions) const;
+  Eigen::MatrixXd backward_large(const Eigen::MatrixXd& gradients) const;
+
   Eigen::VectorXd row_scale_;
   Eigen::VectorXd column_scale_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  std::vector<Eigen::Index> order_;     ///< of the equations, in the factors of a small step
+  Eigen::MatrixXd small_;               ///< their factors
+  mutable std::vector<double> memory_;  ///< of directions on their way: one step is for one thread
+  Eigen::PartialPivLU<Eigen::MatrixXd> large_;
 };
 
 }  // namespace lagroid

@@ -65,6 +65,8 @@ class LinearisedMotion {
   virtual void keep_node(std::unique_ptr<KeptNode>& node) { node = std::make_unique<KeptNumbers>(save()); }
   /// Goes on from a node that this motion kept, with the same bits.
   virtual void return_to(const KeptNode& node) { restore(static_cast<const KeptNumbers&>(node).numbers); }
+  /// Whether `take_back` can, so that nodes are worth keeping for it.
+  virtual bool takes_back() const { return false; }
   /// The gradients of functions of the node `after`, by the state and theta, become those of the node before it,
   /// without making the step between them again. Where this motion cannot do that, they stay and false is returned.
   virtual bool take_back(const KeptNode& /*before*/, const KeptNode& /*after*/, Eigen::MatrixXd& /*gradients*/) {

@@ -80,7 +80,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
       duration += size;
       ++used_;
     };
-    integrator_->for_each_inner_stage(stage);
+    integrator_->for_each_inner_stage(std::ref(stage));  // no memory of its own
     stage(point().step, point().time - point().step_size, point().step_size);
     if (step_size_ == 0) step_size_ = duration;  // zero of a system without a step
     if (std::abs(duration - step_size_) > 1e-9 * std::abs(step_size_))

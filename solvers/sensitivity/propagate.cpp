@@ -103,7 +103,7 @@ void find_matrix_of_the_step(const LinearisedMotion& motion, Eigen::MatrixXd& ou
     const Eigen::Index count = std::min(at_once, states - first);
     Eigen::MatrixXd some = Eigen::MatrixXd::Zero(states + motion.parameters(), count);
     some.middleRows(first, count).setIdentity();
-    for (int stage = 0; stage < motion.stages(); ++stage) some = motion.stage(stage).forward(some);
+    for (int stage = 0; stage < motion.stages(); ++stage) motion.stage(stage).go_forward(some);
     out.middleCols(first, count) = some.topRows(states);
   }
 }
@@ -132,6 +132,10 @@ class Reversal {
       if (more == 0) {
         for (; to - from > 1; --to) {
           if (!go(from, to - 1, start)) return false;
+          if (!motion_.takes_back()) {
+            if (!step(to - 1, start)) return false;  // it stands there
+            continue;
+          }
           motion_.keep_node(last_);
           if (!step(to - 1, *last_)) return false;
           std::swap(last_, end_);
@@ -189,11 +193,11 @@ class Reversal {
     const bool is_observed = weight_of(observed_, from + 1, steps_, duration_) != 0;
     const bool nothing_yet = !is_observed && gradients_.size() == 0;
     const bool wants_matrix = !nothing_yet && units_.wants_matrix();
-    if (nothing_yet || is_observed || wants_matrix || !motion_.take_back(start, *end_, gradients_)) {
+    if (nothing_yet || is_observed || wants_matrix || !end_ || !motion_.take_back(start, *end_, gradients_)) {
       if (!make(from, start)) return false;
       observe(from + 1);
       if (gradients_.size() == 0) return true;
-      for (int k = motion_.stages(); k-- > 0;) gradients_ = motion_.stage(k).backward(gradients_);
+      for (int k = motion_.stages(); k-- > 0;) motion_.stage(k).go_back(gradients_);
       if (wants_matrix) {
         find_matrix_of_the_step(motion_, matrix_);
         units_.see(matrix_);
@@ -244,9 +248,7 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
   out.states_kept = 1;
   out.end = directions;
   const Eigen::Index states = motion.states();
-  const std::vector<Eigen::Index> start = columns_of_the_start(directions, states);
-  const auto of_start = [&](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x(Eigen::seqN(0, states), start)); };
-  Growth growth(of_start(directions));
+  Growth growth(directions, states, columns_of_the_start(directions, states));
   Eigen::MatrixXd matrix;
   const double duration = duration_of(motion, steps, observed, out);
   const auto observe = [&](long node) {
@@ -269,8 +271,8 @@ Propagated propagate_forward(LinearisedMotion& motion, long steps, const Eigen::
       continue;
     }
     if (!advance_linearised(motion, out)) break;
-    for (int stage = 0; stage < motion.stages(); ++stage) out.end = motion.stage(stage).forward(out.end);
-    growth.after_a_step(of_start(out.end));
+    for (int stage = 0; stage < motion.stages(); ++stage) motion.stage(stage).go_forward(out.end);
+    growth.after_a_step(out.end);
     if (growth.wants_matrix()) {
       find_matrix_of_the_step(motion, matrix);
       growth.see(matrix);

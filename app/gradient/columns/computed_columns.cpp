@@ -38,6 +38,7 @@ class WithColumns final : public LinearisedMotion {
   StepReport pass() override { return motion_->pass(); }
   void keep_node(std::unique_ptr<KeptNode>& node) override { motion_->keep_node(node); }
   void return_to(const KeptNode& node) override { motion_->return_to(node); }
+  bool takes_back() const override { return motion_->takes_back(); }
   bool take_back(const KeptNode& before, const KeptNode& after, Eigen::MatrixXd& gradients) override {
     return motion_->take_back(before, after, gradients);
   }

@@ -13,10 +13,10 @@ namespace lagroid::app {
 std::string words_of_growth(const GradientTable& table) {
   std::string out = "\n";
   if (!table.of_boundary_value)
-    out +=
-        fmt::format("  errors grow {:.3g} times on the way: of {} {:.1f} are left\n", table.growth,
-                    table.digits_left < digits_left_by(table.growth) ? "the digits of the tolerance" : "sixteen digits",
-                    table.digits_left);
+    out += fmt::format(
+        "  errors grow {:.3g} times on the way: of {} {:.1f} are left\n", table.growth,
+        table.digits_left < digits_left_by(table.growth) ? "the digits of the tolerance" : "sixteen digits of values",
+        table.digits_left);
   if (table.steps_solved > 0) {
     out += fmt::format("  {} steps were solved", table.steps_solved);
     out +=

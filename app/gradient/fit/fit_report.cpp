@@ -78,7 +78,8 @@ std::string text_of(const Fit& fit) {
                        : each.count < few ? "too few to tell anything by"
                        : each.white       ? "as independent errors do"
                                           : "not as independent errors do, the model is another or the errors are");
-  if (!fit.left_out.empty()) out += fmt::format("  left out by --of: {}\n", fmt::join(fit.left_out, ", "));
+  if (!fit.left_out.empty())
+    out += fmt::format("  not fitted, as --of can choose: {}\n", fmt::join(fit.left_out, ", "));
   if (!fit.ignored.empty())
     out += fmt::format("  ignored, for they are none of what a run is fitted by (more of it by --column): {}\n",
                        fmt::join(fit.ignored, ", "));

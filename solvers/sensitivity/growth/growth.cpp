@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace lagroid {
@@ -34,6 +36,12 @@ std::vector<int> classes_of(const Eigen::MatrixXd& matrix) {
   };
   for (std::size_t i = 0; i < count; ++i)
     if (found[i] < 0) visit(i);
+  return out;
+}
+
+std::vector<Eigen::Index> numbered(Eigen::Index count) {
+  std::vector<Eigen::Index> out(static_cast<std::size_t>(count));
+  std::iota(out.begin(), out.end(), Eigen::Index(0));
   return out;
 }
 
@@ -87,26 +95,38 @@ double largest_ratio(const Eigen::MatrixXd& first, const Eigen::MatrixXd& peak, 
 }
 
 Growth::Growth(const Eigen::MatrixXd& directions)
-    : first_(directions.cwiseAbs()),
+    : Growth(directions, directions.rows(), numbered(directions.cols())) {}
+
+Growth::Growth(const Eigen::MatrixXd& directions, Eigen::Index rows, std::vector<Eigen::Index> columns)
+    : columns_(std::move(columns)),
+      first_(directions(Eigen::seqN(0, rows), columns_).cwiseAbs()),
       peak_(first_),
       added_(first_.colwise().maxCoeff().array() == 0),
       last_(first_.colwise().maxCoeff()) {}
 
 void Growth::after_a_step(const Eigen::MatrixXd& directions) {
   ++steps_;
-  for (Eigen::Index j = 0; j < directions.cols(); ++j) {
-    if (!directions.col(j).allFinite()) {
+  const Eigen::Index rows = first_.rows();
+  for (Eigen::Index j = 0; j < first_.cols(); ++j) {
+    const double* const x = directions.col(columns_[std::size_t(j)]).data();
+    double* const peak = peak_.col(j).data();
+    const double inverse = added_(j) ? 1 / double(steps_) : 1;
+    double largest = 0, zero = 0;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      largest = std::max(largest, std::abs(x[i]));
+      zero += 0 * x[i];
+    }
+    if (zero != 0) {  // an entry is no finite number
       peak_.col(j).setConstant(std::numeric_limits<double>::infinity());
       continue;
     }
-    const double steps = added_(j) ? double(steps_) : 1;
-    const Eigen::VectorXd now = directions.col(j).cwiseAbs() / steps;
+    largest *= inverse;
     // No step makes ten thousand million of one: what was there before was rounding.
     constexpr double rounding = 1e-10;
-    const bool is_first = added_(j) && !(last_(j) > rounding * now.maxCoeff());
-    if (is_first || first_.col(j).maxCoeff() == 0) first_.col(j) = now;
-    peak_.col(j) = peak_.col(j).cwiseMax(now);
-    last_(j) = now.maxCoeff();
+    if (added_(j) && !(last_(j) > rounding * largest))
+      for (Eigen::Index i = 0; i < rows; ++i) first_(i, j) = std::abs(x[i]) * inverse;
+    for (Eigen::Index i = 0; i < rows; ++i) peak[i] = std::max(peak[i], std::abs(x[i]) * inverse);
+    last_(j) = largest;
   }
 }
 

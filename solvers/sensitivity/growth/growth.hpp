@@ -17,6 +17,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 namespace lagroid {
 
 /// The units d of the components of a state.
@@ -45,6 +47,8 @@ double largest_ratio(const Eigen::MatrixXd& first, const Eigen::MatrixXd& peak, 
 class Growth {
  public:
   explicit Growth(const Eigen::MatrixXd& directions);
+  /// Of the first rows of these, and of some of their columns.
+  Growth(const Eigen::MatrixXd& directions, Eigen::Index rows, std::vector<Eigen::Index> columns);
 
   void after_a_step(const Eigen::MatrixXd& directions);
   bool wants_matrix() { return units_.wants_matrix(); }
@@ -53,6 +57,7 @@ class Growth {
 
  private:
   OwnUnits units_;
+  std::vector<Eigen::Index> columns_;
   Eigen::MatrixXd first_;
   Eigen::MatrixXd peak_;
   Eigen::Array<bool, 1, Eigen::Dynamic> added_;  ///< columns that were zero at the start

@@ -132,6 +132,8 @@ void LinearisedScene::return_to(const KeptNode& node) {
   }
 }
 
+bool LinearisedScene::takes_back() const { return adjoint_.has_value(); }
+
 bool LinearisedScene::take_back(const KeptNode& before, const KeptNode& after, Eigen::MatrixXd& gradients) {
   if (!adjoint_) return false;
   const SceneState& start = static_cast<const KeptScene&>(before).state;

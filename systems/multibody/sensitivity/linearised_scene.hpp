@@ -71,6 +71,7 @@ class LinearisedScene final : public CuttableMotion {
   StepReport pass() override { return motion_.advance(); }
   void keep_node(std::unique_ptr<KeptNode>& node) override;
   void return_to(const KeptNode& node) override;
+  bool takes_back() const override;
   bool take_back(const KeptNode& before, const KeptNode& after, Eigen::MatrixXd& gradients) override;
 
   void keep() override { kept_ = motion_.state(); }

@@ -1,5 +1,7 @@
 // Derivatives of runs by composed steps and by steps that depend on time, of functions of nodes, and what is refused.
 
+#include "../../support/allocation_counter.hpp"
+
 #include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/integrators/splitting.hpp>
 #include <lagroid/solvers/testing/sensitivity_laws.hpp>
@@ -39,6 +41,19 @@ std::unique_ptr<Integrator<HardSpring>> composed(const HardSpring& system, const
   return std::make_unique<detail::IntegratorOf<HardSpring, CompositionIntegrator<HardSpring>>>(
       system, from, Pair<1>::unit(from.object), compositions::suzuki,
       [] { return std::make_unique<NewtonStep<HardSpring>>(); });
+}
+
+TEST(RunGradients, StepsForwardTakeNoMemory) {
+  const auto taken = [](long steps) {
+    LinearisedMotionOf<HardSpring> motion(
+        spring(), detail::newton_integrator(spring(), start, SensitivityOptions<HardSpring>{}), {"stiffness"},
+        [](const ObservedNode<HardSpring>& node) { return VariedVector(node.momentum); });
+    const long before = allocation_count();
+    EXPECT_TRUE(propagate_forward(motion, steps, Eigen::MatrixXd::Identity(3, 3)).converged());
+    return allocation_count() - before;
+  };
+  if (allocation_count() < 0) GTEST_SKIP() << "allocations cannot be counted here";
+  EXPECT_EQ(taken(1100), taken(2000));  // of a few steps, the last at 1024, growth sees the matrix
 }
 
 TEST(RunGradients, ComposedStepsAreProductsOfTheirStages) {

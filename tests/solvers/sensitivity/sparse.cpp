@@ -1,11 +1,17 @@
-// Steps of few entries against the same steps as dense matrices, and the colours of their columns.
+// Linear steps against their definition, small and large; steps of few entries against the same steps as dense
+// matrices, and the colours of their columns.
+#include "../../support/allocation_counter.hpp"
+
+#include <lagroid/core/matrices/scaling.hpp>
 #include <lagroid/solvers/sensitivity/sparse/colouring.hpp>
 #include <lagroid/solvers/sensitivity/sparse/sparse_step.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -75,6 +81,103 @@ void expect_same(Both step) {
     near(step.sparse.backward(x), step.dense.backward(x));
     near(step.dense.equations_by_unknowns * step.sparse.unknowns(x), -step.dense.equations_by_start * x);
   }
+}
+
+/// Equations in units that are far apart, as momenta and constraints are.
+LinearStep random_step(int equations, int states, int parameters, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  LinearStep out(equations, states, parameters);
+  const auto fill = [&](Eigen::MatrixXd& x) {
+    for (double& entry : x.reshaped()) entry = uniform(random);
+  };
+  for (Eigen::MatrixXd* x :
+       {&out.equations_by_unknowns, &out.equations_by_start, &out.end_by_unknowns, &out.end_by_start})
+    fill(*x);
+  for (int i = 0; i < equations; ++i) {
+    out.equations_by_unknowns(i, (i + 1) % equations) += 3;  // pivots are not on the diagonal
+    const double row = std::pow(10, 8 * uniform(random)), column = std::pow(10, 8 * uniform(random));
+    out.equations_by_unknowns.row(i) *= row;
+    out.equations_by_start.row(i) *= row;
+    out.equations_by_unknowns.col(i) *= column;
+    out.end_by_unknowns.col(i) *= column;
+  }
+  return out;
+}
+
+TEST(LinearStep, IsTheDerivativeOfAnImplicitFunction) {
+  unsigned seed = 1;
+  for (const int equations : {0, 1, 2, 3, 4, 5, 7, 16, 17, 24})
+    for (const int states : {2, 4, 5, 6, 12, 32, 33})
+      for (const int parameters : {0, 1, 6}) {
+        LinearStep step = random_step(equations, states, parameters, ++seed);
+        ASSERT_TRUE(step.factor()) << equations;
+        Eigen::MatrixXd matrix = step.end_by_start;
+        if (equations > 0) {
+          const auto scaling = Scaling<Eigen::Dynamic>::equilibrate(step.equations_by_unknowns);
+          const Eigen::MatrixXd right = scaling.row.asDiagonal() * step.equations_by_start;
+          matrix -= step.end_by_unknowns *
+                    (scaling.column.asDiagonal() * scaling.apply(step.equations_by_unknowns).fullPivLu().solve(right));
+        }
+        const Eigen::MatrixXd x = Eigen::MatrixXd::Random(states + parameters, 3);
+        Eigen::MatrixXd forward = x, backward = x;
+        forward.topRows(states) = matrix * x;
+        backward.topRows(states).setZero();
+        backward += matrix.transpose() * x.topRows(states);
+        const double rounding = 1e-13 * (1 + equations) * (1 + matrix.norm());
+        EXPECT_LT((step.forward(x) - forward).norm(), rounding) << equations << " " << states;
+        EXPECT_LT((step.backward(x) - backward).norm(), rounding) << equations << " " << states;
+      }
+}
+
+TEST(LinearStep, SmallOnesTakeNoMemoryButAtFirst) {
+  LinearStep step = random_step(3, 6, 2, 7);
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(8, 8), gradients = Eigen::MatrixXd::Ones(8, 2);
+  const auto go = [&] {
+    EXPECT_TRUE(step.factor());
+    step.go_forward(directions);
+    step.go_back(gradients);
+  };
+  go();
+  const long count = allocation_count();
+  if (count < 0) GTEST_SKIP() << "allocations cannot be counted here";
+  go();
+  EXPECT_EQ(allocation_count(), count);
+}
+
+TEST(LinearStep, SaysWhatIsSingularOrNoNumber) {
+  const LinearStep regular = random_step(4, 6, 1, 3);
+  for (const int equations : {4, 20}) {
+    LinearStep step = random_step(equations, 6, 1, 5);
+    // Twice the same equation, up to its unit and to rounding.
+    step.equations_by_unknowns.row(1) = step.equations_by_unknowns.row(0) * 1.7e9;
+    EXPECT_FALSE(step.factor()) << equations;
+  }
+  // By integers; of one pivot rounding is left, and of the other nothing.
+  LinearStep exactly = regular;
+  exactly.equations_by_unknowns = Eigen::Matrix4d{{1, 0, -1, 1}, {1, 1, -1, 1}, {-2, 2, -2, -1}, {-2, 6, -6, 0}};
+  EXPECT_FALSE(exactly.factor());
+  // No two pivots are far apart, and the condition is 1e24.
+  for (const int equations : {8, 20}) {
+    LinearStep step = random_step(equations, 6, 1, 5);
+    step.equations_by_unknowns.setZero();
+    step.equations_by_unknowns.diagonal().setConstant(1e-4);
+    step.equations_by_unknowns.diagonal(1).setOnes();
+    step.equations_by_unknowns(0, 0) = step.equations_by_unknowns(equations - 1, equations - 1) = 1;
+    EXPECT_FALSE(step.factor()) << equations;
+  }
+  // Far from regular, and not singular.
+  LinearStep near(2, 4, 0);
+  near.equations_by_unknowns = Eigen::Matrix2d{{1, 1}, {1, 1 + 1e-8}};
+  EXPECT_TRUE(near.factor());
+  using Part = Eigen::MatrixXd LinearStep::*;
+  for (const Part part : {&LinearStep::equations_by_unknowns, &LinearStep::equations_by_start,
+                          &LinearStep::end_by_unknowns, &LinearStep::end_by_start})
+    for (const double none : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+      LinearStep step = regular;
+      (step.*part)(1, 0) = none;
+      EXPECT_FALSE(step.factor());
+    }
 }
 
 TEST(SparseStep, IsTheSameStepAsDense) {
