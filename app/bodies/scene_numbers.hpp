@@ -17,8 +17,8 @@ struct SharedChange {
   bool operator==(const SharedChange&) const = default;
 };
 
-/// By a name and where it stands in the scene: spring.stiffness at effect.0.stiffness. Or of what stands in several places,
-/// with no path of its own.
+/// By a name and where it stands in the scene: spring.stiffness at effect.0.stiffness. Or of what stands in several
+/// places, with no path of its own.
 struct SceneNumber {
   std::string name;
   std::string path;
@@ -39,12 +39,12 @@ std::vector<SceneNumber> numbers_of_scene(const Section& scene);
 /// those of tables without a name, by where they stand, effect.0.motion.
 std::vector<SceneNumber> numbers_to_differentiate(const Section& scene);
 
-/// Where joints are, as `hinge.place.0`: x, y, z in space of the first's point at the start, with which the second's goes,
-/// while the bodies stay. Of joints between points that the scene gives.
+/// Where joints are, as `hinge.place.0`: x, y, z in space of the first's point at the start, with which the second's
+/// goes, while the bodies stay. Of joints between points that the scene gives.
 std::vector<SceneNumber> places_of_joints(const Section& scene, const SceneBodies& bodies);
 
-/// The scene with what nature is taken to have where nothing is said: gravity, its constant, Coulomb's; and with the pivots
-/// of bodies at the origin.
+/// The scene with what nature is taken to have where nothing is said: gravity, its constant, Coulomb's; and with the
+/// pivots of bodies at the origin.
 Section with_constants(const Section& scene);
 
 /// The scene with these in their places.
