@@ -306,11 +306,6 @@ steps = 30
             self.assertAlmostEqual(found[0], 32, delta=32e-9)
             self.assertAlmostEqual(found[1], 1.1, delta=1e-9)
 
-    def gradient_on_spheres(self, scene, *words, code=0):
-        told = run(of_part("spheres"), "gradient", examples / f"{scene}.toml", *words, "--json")
-        self.assertEqual(told.returncode, code, told.stdout + told.stderr)
-        return json.loads(told.stdout)
-
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

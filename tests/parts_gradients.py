@@ -224,6 +224,11 @@ class Gradients(unittest.TestCase):
             self.assertEqual(told.returncode, 2)
             self.assertIn("ask for cost", told.stderr)
 
+    def gradient_on_spheres(self, scene, *words, code=0):
+        told = run(of_part("spheres"), "gradient", examples / f"{scene}.toml", *words, "--json")
+        self.assertEqual(told.returncode, code, told.stdout + told.stderr)
+        return json.loads(told.stdout)
+
     def test_gradients_of_scenes_on_spheres_by_every_method(self):
         methods = ("rattle", "lie-euler", "crouch-grossman-2", "crouch-grossman-3", "commutator-free-4", "munthe-kaas-4", "munthe-kaas-54",
                    "euler", "runge-kutta-4")

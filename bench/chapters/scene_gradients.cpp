@@ -131,7 +131,7 @@ void add_matrix_of_kepler(std::vector<Subject>& out) {
   const State<Kepler::GroupoidType> start = {{1, 0}, {0, 1.2}};
   const auto linearised = [kepler, start] {
     return std::make_shared<LinearisedMotionOf<Kepler>>(
-        kepler, detail::newton_integrator(kepler, start, {}), std::vector<std::string>{"strength"},
+        kepler, lagroid::detail::newton_integrator(kepler, start, {}), std::vector<std::string>{"strength"},
         [](const ObservedNode<Kepler>& node) { return VariedVector(node.momentum); });
   };
   using Motion = std::shared_ptr<LinearisedMotionOf<Kepler>>;
