@@ -37,10 +37,14 @@ void require_derivative(const std::string& name, const Eigen::VectorXd& derivati
   const double uncertain = 10 * (coarse - fine).norm() + 100 * std::numeric_limits<double>::epsilon() * rounding;
   const double size = std::max(derivative.norm(), fine.norm());
   if ((derivative - fine).norm() <= 1e-3 * size + uncertain || !std::isfinite(uncertain)) return;
-  throw WithoutDerivative(
-      fmt::format("parameter {} carries no derivative: the system reads it as a plain number; its formulas must read "
-                  "it by varied<S>(...) (core/scalars/varied.hpp)",
-                  name));
+  const char* const why =
+      derivative.isZero(0)
+          ? "the system reads it as a plain number; its formulas must read it by varied<S>(...) "
+            "(core/scalars/varied.hpp)"
+          : "differences of the step contradict it, as where a step is another one next to this value (moments that "
+            "are "
+            "equal, a branch), or where a part of the formulas reads it as a plain number (core/scalars/varied.hpp)";
+  throw WithoutDerivative(fmt::format("parameter {} carries no derivative: {}", name, why));
 }
 
 }  // namespace lagroid::detail
