@@ -192,7 +192,7 @@ kick = ["0.9*a.px", "-0.1*b.py", "0", "0.02*a.px", "0", "0"]
             self.assertEqual(found["contradicted"], [])
             self.assertGreater(found["digits_agreed"], 8, scene)
             self.assertGreater(max(abs(x) for row in found["derivatives"] for x in row), 1e-3)
-        # By a place of a joint both of its points move: together with all other joints and all starts, the whole scene does.
+        # By one of its points alone a joint is torn, and the message says by what both of them move.
         told = run(of_part("bodies"), "gradient", examples / "three_links.toml", "--set", "time.steps=40", "--of", "final.upper.x,final.upper.px",
                    "--wrt", "initial.position,parameters.joint.0.place.0,parameters.joint.0.points.0", "--json")
         self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)

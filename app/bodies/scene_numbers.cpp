@@ -21,6 +21,11 @@ bool is_differentiated(std::string_view kind, std::string_view key) {
          key.starts_with("ground_") || (kind == "body" && key == "at");
 }
 
+/// Its own, or that of where it stands.
+std::string name_of(const Section& table, const std::string& place) {
+  return table.has("name") ? table.text("name", "its name") : place;
+}
+
 /// The numbers at keys that are wanted, of tables with a name; or, of the whole scene, of all, and points too.
 template <class Wanted>
 std::vector<SceneNumber> listed_numbers(const Section& scene, const Wanted& is_wanted, bool whole) {
@@ -37,7 +42,7 @@ std::vector<SceneNumber> listed_numbers(const Section& scene, const Wanted& is_w
     for (std::size_t i = 0; i < tables.size(); ++i) {
       const std::string place = fmt::format("{}.{}", kind, i);
       if (!whole && !tables[i].has("name")) continue;
-      const std::string name = tables[i].has("name") ? tables[i].text("name", "its name") : place;
+      const std::string name = name_of(tables[i], place);
       for (const std::string& leaf : tables[i].as_overrides()) {
         const std::string key = leaf.substr(0, leaf.find('='));
         if (!is_wanted(kind, key)) continue;
@@ -51,7 +56,7 @@ std::vector<SceneNumber> listed_numbers(const Section& scene, const Wanted& is_w
   return out;
 }
 
-/// Without the key; none where that is no numbers.
+/// What holds where the key is not given; empty where that is no number.
 std::vector<double> numbers_that_hold(const Key& key) {
   if (const auto* number = std::get_if<double>(&key.fallback)) return {*number};
   if (const auto* array = std::get_if<std::vector<double>>(&key.fallback)) return *array;
@@ -73,7 +78,7 @@ std::vector<SceneNumber> places_of_joints(const Section& scene, const SceneBodie
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!joints[i].has("points")) continue;
     const std::string path = fmt::format("joint.{}", i);
-    const std::string name = joints[i].has("name") ? joints[i].text("name", "its name") : path;
+    const std::string name = name_of(joints[i], path);
     const std::vector<std::string> tied = joints[i].texts_or_none("between", "two bodies");
     std::array<Eigen::Matrix3d, 2> attitude{Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
     Eigen::Vector3d place = Eigen::Vector3d::Zero();

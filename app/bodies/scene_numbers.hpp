@@ -27,7 +27,7 @@ struct SceneNumber {
   std::vector<SharedChange> shared = {};
   bool operator==(const SceneNumber&) const = default;
 
-  /// Numbers in the scene that it varies, of which it is one with a derivative.
+  /// What varies in the scene, and how, where this number is one with derivatives.
   std::vector<VariedAt> varied(const VariedNumber& number) const;
 };
 

@@ -43,7 +43,8 @@ class Rows {
   void scale(Eigen::Index i, double a) const {
     for (Eigen::Index s = 0; s < width_; s += 4) four(i, s) *= a;
   }
-  /// Row i becomes `scale` times the sum of a(j) times row j of others; or takes it, of its own.
+  /// Row i becomes `scale` times the sum of a(j) times row j of `of`; by `add` that sum, from `from` on, is added to
+  /// it.
   template <class A, class Count>
   void put(Eigen::Index i, double scale, Count count, const A& a, const Rows& of) const {
     for (Eigen::Index s = 0; s < width_; s += 4) {

@@ -42,8 +42,8 @@ void require_derivative(const std::string& name, const Eigen::VectorXd& derivati
           ? "the system reads it as a plain number; its formulas must read it by varied<S>(...) "
             "(core/scalars/varied.hpp)"
           : "differences of the step contradict it, as where a step is another one next to this value (moments that "
-            "are "
-            "equal, a branch), or where a part of the formulas reads it as a plain number (core/scalars/varied.hpp)";
+            "are equal, a branch), or where a part of the formulas reads it as a plain number "
+            "(core/scalars/varied.hpp)";
   throw WithoutDerivative(fmt::format("parameter {} carries no derivative: {}", name, why));
 }
 
