@@ -154,6 +154,18 @@ class Checks(unittest.TestCase):
         self.assertIn("cannot tell", done.stdout)
         self.assertNotIn("0.0 digits", done.stdout)
 
+    def test_what_is_zero_by_cancellation_is_not_contradicted(self):
+        # The momentum about the vertical of three rods in a plane: terms of size one, whose sum is zero.
+        plane = ("spheres", examples / "pendulum_chain.toml", "--of", "final.Jz", "--check", "--set", "time.steps=300", "--set",
+                 "initial={theta=[1.9,1.4,2.6],phi=[0.3,0.3,0.3],angular_velocities=[[0,0,0],[0,0,0],[0,0,0]]}")
+        found = told(*plane, "--wrt", "parameters")
+        self.assertEqual(found["contradicted"], [])
+        self.assertLess(max(abs(each) for row in found["derivatives"] for each in row), 1e-11)
+        # What it does depend on is told beside them.
+        turned = told(*plane, "--wrt", "initial")
+        self.assertEqual(turned["contradicted"], [])
+        self.assertGreater(turned["digits_agreed"], 8)
+
     def test_a_check_and_a_tolerance_are_not_ignored(self):
         done = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--deviations", "initial.p=0.1", "--check")
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)

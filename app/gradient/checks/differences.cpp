@@ -80,9 +80,34 @@ std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows
   return out;
 }
 
-/// Of a column of derivatives, at a size of its number.
-Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, const ValuesAt& values, double size,
-                        double rate) {
+/// What the values are known to, three times over, by those beside each other: what is left of nine so near that a
+/// straight line has them but for rounding. None of terms that cancel is seen in a value. None where some has no value.
+std::optional<Eigen::ArrayXd> noise_beside(const ValuesAt& values, double size) {
+  constexpr int to_each_side = 4;
+  constexpr double apart = 1e-10;
+  std::vector<Eigen::ArrayXd> found;
+  for (int k = -to_each_side; k <= to_each_side; ++k) {
+    const std::optional<Eigen::VectorXd> value = values(k * apart * size);
+    if (!value) return std::nullopt;
+    found.push_back(value->array());
+  }
+  const auto count = double(found.size());
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(found.front().size()), slope = mean, squares = mean;
+  double spread = 0;
+  for (int k = -to_each_side; k <= to_each_side; ++k) {
+    const Eigen::ArrayXd& value = found[std::size_t(k + to_each_side)];
+    mean += value / count;
+    slope += k * (value - found.front());
+    spread += k * k;
+  }
+  for (int k = -to_each_side; k <= to_each_side; ++k)
+    squares += (found[std::size_t(k + to_each_side)] - mean - k * slope / spread).square();
+  return 3 * (squares / (count - 2)).sqrt();
+}
+
+/// Of a column of derivatives, at a size of its number, of values that are known to the noise of their rows.
+Compared compare_column_by(const Eigen::ArrayXd& exact, const RowScales& rows, const ValuesAt& values, double size,
+                           double rate) {
   const Eigen::Index count = exact.size();
   Compared out{.size = size};
   out.agrees.setConstant(count, false);
@@ -126,6 +151,17 @@ Compared compare_column(const Eigen::ArrayXd& exact, const RowScales& rows, cons
   for (const double narrower : {1e-4, 1e-5, 1e-6, 1e-7})
     if ((out.told_otherwise && !out.agrees).any()) compare_at(narrower * usual * size, well_known);
   return out;
+}
+
+/// The same; what differences contradict is compared once more, by the noise that values have.
+Compared compare_column(const Eigen::ArrayXd& exact, RowScales rows, const ValuesAt& values, double size, double rate) {
+  Compared out = compare_column_by(exact, rows, values, size, rate);
+  const Booleans contradicted = out.told_otherwise && !out.agrees;
+  if (!contradicted.any()) return out;
+  const std::optional<Eigen::ArrayXd> noise = noise_beside(values, size);
+  if (!noise || (*noise <= rows.noise || !contradicted).all()) return out;
+  rows.noise = rows.noise.max(*noise);
+  return compare_column_by(exact, rows, values, size, rate);
 }
 
 Eigen::ArrayXd scales_of_rows(const GradientSubject& subject, const GradientTable& table, const ValuesAreKnown& is) {
