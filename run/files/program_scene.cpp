@@ -25,7 +25,7 @@ void require_name_and_start(std::string_view option, std::string_view name, std:
   if (const std::string problem = text_problem(name); !problem.empty())
     throw std::invalid_argument(fmt::format("{}: {}", option, problem));
   for (const NamedVector& each : start)
-    if (!std::ranges::all_of(each.values, [](double x) { return std::isfinite(x); }))
+    if (!std::all_of(each.values.begin(), each.values.end(), [](double x) { return std::isfinite(x); }))
       throw std::invalid_argument(
           fmt::format("the start of {} must be finite, got {} [{}]", what, each.name, fmt::join(each.values, ", ")));
 }

@@ -97,8 +97,8 @@ template <DiscreteSystem Sys> class SystemNode final : public Observables {
     how(arrow_system_);
     for (std::size_t i = 0; i < quantities_.size(); ++i) {
       if (watched_[i].adds_up) continue;
-      const auto changed =
-          std::ranges::find_if(quantities, [&](const Quantity<Sys>& q) { return q.name == quantities_[i].name; });
+      const auto changed = std::find_if(quantities.begin(), quantities.end(),
+                                        [&](const Quantity<Sys>& q) { return q.name == quantities_[i].name; });
       if (changed != quantities.end())
         quantities_[i] = *changed;
       else

@@ -44,8 +44,8 @@ Eigen::Matrix<double, 3, 2> tangent_frame(const Vector<double, 3>& q) {
 
 Eigen::MatrixXd tangent_directions(const SphereIntegrator::Points& z, const Eigen::VectorXd& coordinates,
                                    SphereIntegrator::Points& moved) {
-  using V = VariedNumber;
-  using Space = CotangentSpheres<Eigen::Dynamic, V>;
+  using Scalar = VariedNumber;
+  using Space = CotangentSpheres<Eigen::Dynamic, Scalar>;
   const int k = int(z.cols());
   const Space space{{k}};
   Eigen::MatrixXd by(6 * k, 4 * k);
@@ -53,19 +53,20 @@ Eigen::MatrixXd tangent_directions(const SphereIntegrator::Points& z, const Eige
   detail::for_directions(4 * k, [&](int first) {
     const auto coordinate = [&](int i) {
       const int direction = i - first;
-      return 0 <= direction && direction < varied_at_once ? V::variable(coordinates(i), direction) : V(coordinates(i));
+      return 0 <= direction && direction < varied_at_once ? Scalar::variable(coordinates(i), direction)
+                                                          : Scalar(coordinates(i));
     };
     auto turn = space.zero_algebra();
     auto point = space.zero_point();
     for (int i = 0; i < k; ++i) {
       const Vector<double, 3> q = z.col(i).head<3>();
       const Eigen::Matrix<double, 3, 2> frame = tangent_frame(q);
-      const auto along = [&](int at) -> Vector<V, 3> {
+      const auto along = [&](int at) -> Vector<Scalar, 3> {
         return frame.col(0) * coordinate(at) + frame.col(1) * coordinate(at + 1);
       };
-      const Vector<V, 3> from = q.cast<V>();
-      Space::set(turn, i, cross(from, along(2 * i)), Vector<V, 3>::Zero());
-      Space::set(point, i, from, z.col(i).tail<3>().cast<V>() + along(2 * (k + i)));
+      const Vector<Scalar, 3> from = q.cast<Scalar>();
+      Space::set(turn, i, cross(from, along(2 * i)), Vector<Scalar, 3>::Zero());
+      Space::set(point, i, from, z.col(i).tail<3>().cast<Scalar>() + along(2 * (k + i)));
     }
     space.act(turn, point);
     const auto at = point.reshaped();
