@@ -47,6 +47,9 @@ KeyOf<Texts> on_key(const std::string& name) {
   return {name, {}, "", "formulas of the state that vanish there", std::vector<std::string>()};
 }
 
+const KeyOf<Text> end_cost_key{"end_cost", {},    "", "formula of the state at an end that is free, added to the cost",
+                               {},         "none"};
+
 namespace phase_keys {
 
 const KeyOf<Text> name{"name", {}, "", "what it is called", {}, "phase 1, phase 2 and so on"};
@@ -86,15 +89,19 @@ std::vector<bool> read_names(const Section& at, const KeyOf<Texts>& key, std::sp
   return out;
 }
 
-std::shared_ptr<const StateFormulas> read_formulas(const Section& at, const KeyOf<Texts>& key,
-                                                   std::span<const std::string> states) {
-  const std::vector<std::string> texts = read_key(at, key);
+std::shared_ptr<const StateFormulas> formulas_of(const Section& at, const std::string& key,
+                                                 const std::vector<std::string>& texts,
+                                                 std::span<const std::string> states) {
   if (texts.empty()) return nullptr;
   try {
     return std::make_shared<const StateFormulas>(texts, std::vector<std::string>(states.begin(), states.end()));
   } catch (const std::invalid_argument& error) {
-    at.fail(key.name, error.what());
+    at.fail(key, error.what());
   }
+}
+std::shared_ptr<const StateFormulas> read_formulas(const Section& at, const KeyOf<Texts>& key,
+                                                   std::span<const std::string> states) {
+  return formulas_of(at, key.name, read_key(at, key), states);
 }
 
 std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::string> states,
@@ -157,6 +164,12 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   };
   require_free("start", out.start_on.get(), out.free_start);
   require_free("end", out.end_on.get(), out.free_end);
+  if (ends.has(end_cost_key.name)) {
+    if (std::none_of(out.free_end.begin(), out.free_end.end(), [](bool free) { return free; }))
+      ends.fail(end_cost_key.name,
+                "where the end is given this is the same for all motions; name in free_end what may differ from it");
+    out.end_cost = formulas_of(ends, end_cost_key.name, {read_key_or(ends, end_cost_key, "")}, states);
+  }
   constexpr double none = std::numeric_limits<double>::infinity();
   out.bounds = read_bounds(scene.section_or_empty("bounds"), controls, ControlBounds(controls.size(), {-none, none}));
   out.phases = read_phases(scene, states, controls, out.bounds);
@@ -204,7 +217,7 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
                      optional_table("parameters", {problem.parameters()}, "of the system, in place of the scene's")}};
   return {KeyOf<Table>{"boundary",
                        {{end_key("start", states), end_key("end", states), free_end_key("start"), free_end_key("end"),
-                         on_key("start_on"), on_key("end_on")}},
+                         on_key("start_on"), on_key("end_on"), end_cost_key}},
                        "",
                        "both ends"},
           KeyOf<Table>{"horizon",

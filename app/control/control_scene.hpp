@@ -41,7 +41,8 @@ struct ControlScene {
   std::vector<bool> free_end;
   std::shared_ptr<const StateFormulas> start_on = {};  ///< what vanishes at the start
   std::shared_ptr<const StateFormulas> end_on = {};
-  std::vector<PhaseScene> phases;  ///< in place of the horizon
+  std::shared_ptr<const StateFormulas> end_cost = {};  ///< one formula, which is added to the cost
+  std::vector<PhaseScene> phases;                      ///< in place of the horizon
   double duration = 1;
   bool duration_is_free = false;
   long stages = 100;

@@ -266,6 +266,9 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     };
     pose("free_start", read.free_start, start, read.start_on, task.free_start, task.start_condition);
     pose("free_end", read.free_end, end_of(read), read.end_on, task.free_end, task.end_condition);
+    if (read.end_cost)
+      task.end_cost = std::make_shared<const StateCondition<G>>(start, end_of(read),
+                                                                typename StateCondition<G>::Given{}, read.end_cost);
   }
   static bool is_conserved(std::size_t i) {
     if constexpr (requires { Sys::conserved; }) {

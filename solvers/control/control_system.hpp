@@ -1,7 +1,9 @@
 #pragma once
 /// Optimal control on a Lie groupoid G: arrows g_k with controls u_k in R^c, k = 1 ... N, whose product is given,
 ///
-///     minimise  sum_k l(g_k, u_k, h),    phi(g_k, u_k, h) = 0,    gamma(g_k, u_k, h) <= 0,    lower <= u_k <= upper.
+///     minimise  sum_k l(g_k, u_k, h),    phi(g_k, u_k, h) = 0,    gamma(g_k, u_k, h) <= 0,    lower <= u_k <= upper,
+///
+/// and where the last node is free in part, perhaps with a cost of it, Psi, beside the sum (ControlTask::end_cost).
 ///
 /// A problem is a class that writes l, phi and gamma as they stand in a paper; its derivatives, exact second ones
 /// included, are automatic. The step h = T / N may be an unknown: then T is free.
@@ -219,6 +221,8 @@ template <class Sys> struct ControlTask {
   /// What an end is to satisfy that is free in part (node_condition.hpp).
   std::shared_ptr<const NodeCondition<G>> start_condition{};
   std::shared_ptr<const NodeCondition<G>> end_condition{};
+  /// Psi of the last node, one number, which is added to the cost (node_condition.hpp); of an end that is free in part.
+  std::shared_ptr<const NodeCondition<G>> end_cost{};
   /// One after another, in place of the system, duration and bounds above; none: these, in one phase.
   std::vector<ControlPhase<Sys>> phases{};
 };

@@ -64,6 +64,8 @@ template <class Sys> void require_control_task(const ControlTask<Sys>& task, con
   if ((task.start_condition && !is_free(task.free_start)) || (task.end_condition && !is_free(task.free_end)) ||
       phases.back().end_condition)
     throw std::invalid_argument("a condition on an end of the motion is the task's, and that end is free in part");
+  if (task.end_cost && (!is_free(task.free_end) || task.end_cost->size() != 1))
+    throw std::invalid_argument("a cost of the end is one number, of an end that is free in part");
 }
 
 /// From a trajectory of one's own.

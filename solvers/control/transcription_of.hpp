@@ -125,9 +125,12 @@ template <class Sys> class TranscriptionOf final : public Transcription {
               bounds_[i].holds(phase) ? bounds_[i].sign * (path.controls[at](bounds_[i].control) - bounds_[i].of(phase))
                                       : not_there;
       }
-    for (std::size_t i = 0; i < conditions_.size(); ++i)
-      conditions_[i].psi->values(task_.system.groupoid, latest.nodes[i],
-                                 out.equality[conditions_[i].stage] + conditions_[i].row);
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      const PlacedCondition& at = conditions_[i];
+      double cost = 0;
+      at.psi->values(task_.system.groupoid, latest.nodes[i], at.is_cost() ? &cost : out.equality[at.stage] + at.row);
+      out.cost[at.stage][0] += cost;
+    }
   }
 
   void derivatives(const StageRows& lambda, const StageRows& z, StageDerivatives& out) const override {
@@ -210,12 +213,14 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   static constexpr double not_there = -1;
 
   bool begins(long stage, std::size_t phase) const { return stage == (phase == 0 ? 0 : sizes_.phases[phase - 1].end); }
-  /// psi of a node, in a row of the stage that ends there; of the first, in stage 0.
+  /// psi of a node, in a row of the stage that ends there; of the first, in stage 0. Or a cost, in that of the stage.
   struct PlacedCondition {
+    static constexpr int cost = -1;
     std::shared_ptr<const NodeCondition<G>> psi;
     long node;
     long stage;
     int row;
+    bool is_cost() const { return row == cost; }
   };
   struct Standing {
     ControlTrajectory<Sys> path;
@@ -278,6 +283,8 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       };
       place(node_condition<G, Sys::end_equalities>(psi), sizes_.stages);
     }
+    if (task_.end_cost)
+      conditions_.push_back({task_.end_cost, sizes_.stages, sizes_.stages - 1, PlacedCondition::cost});
     sizes_.node_equality = *std::max_element(sizes_.conditions.begin(), sizes_.conditions.end());
     sizes_.equality = Sys::equalities + sizes_.node_equality;
   }
@@ -304,7 +311,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       now_.nodes[i] = product;
     }
   }
-  /// Rows and Hessian of a condition: along the node alone.
+  /// Rows and Hessian of a condition, or gradient and Hessian of a cost: along the node alone.
   void add_condition(std::size_t i, const StageRows& lambda, StageDerivatives& out) const {
     const PlacedCondition& at = conditions_[i];
     const int size = at.psi->size();
@@ -312,12 +319,18 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     std::vector<double>& hessian = condition_hessian_;
     rows.resize(std::size_t(size * n));
     hessian.assign(std::size_t(n * n), 0.0);
-    at.psi->derivatives(task_.system.groupoid, now_.nodes[i], lambda[at.stage] + at.row, rows.data(), hessian.data());
+    static constexpr double once = 1;
+    at.psi->derivatives(task_.system.groupoid, now_.nodes[i], at.is_cost() ? &once : lambda[at.stage] + at.row,
+                        rows.data(), hessian.data());
     const int begin = at.node == 0 ? 0 : n;
-    double* equality = out.equality[at.stage] + at.row * d;
-    std::fill(equality, equality + size * d, 0.0);
-    for (int r = 0; r < size; ++r)
-      std::copy(rows.begin() + r * n, rows.begin() + (r + 1) * n, equality + r * d + begin);
+    if (at.is_cost()) {
+      for (int q = 0; q < n; ++q) out.gradient[at.stage][begin + q] += rows[std::size_t(q)];
+    } else {
+      double* equality = out.equality[at.stage] + at.row * d;
+      std::fill(equality, equality + size * d, 0.0);
+      for (int r = 0; r < size; ++r)
+        std::copy(rows.begin() + r * n, rows.begin() + (r + 1) * n, equality + r * d + begin);
+    }
     double* square = out.hessian[at.stage];
     for (int r = 0; r < n; ++r)
       for (int q = 0; q < n; ++q) square[(begin + r) * d + begin + q] += hessian[std::size_t(r * n + q)];

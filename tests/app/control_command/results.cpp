@@ -262,6 +262,27 @@ TEST_F(ControlResults, WhatRepeatsIsToldInASentence) {
   expect_refused("control " + one_name.string(), "constraint.5.name: is that of constraint.4: give another");
 }
 
+// From rest to where a cost of the end and effort are least together: w / (1 + w S) (DoubleIntegrators).
+TEST_F(ControlResults, ACostOfTheEndIsAFormula) {
+  const fs::path file = folder_ / "towards.toml";
+  std::ofstream(file)
+      << "control = \"double_integrator\"\n[boundary]\nstart = [0, 0]\nend = [1, 0]\n"
+         "free_end = [\"x\", \"v\"]\nend_cost = \"5*(x - 1)^2\"\n[horizon]\nduration = 2\nstages = 20\n";
+  const Outcome r = run("control " + file.string() + " --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const double s = 8.0 / 3 - 2 * 0.01 / 12;
+  EXPECT_NEAR(json::parse(r.out).at("cost").get<double>(), 5 / (1 + 5 * s), 1e-12);
+  const Outcome checked = run("check " + file.string());
+  EXPECT_EQ(checked.code, 0) << checked.out << checked.err;
+  for (const auto& [set, words] :
+       {std::pair{"boundary.free_end=[]", "end_cost"}, {"boundary.end_cost=\"5*(z - 1)\"", "z"}}) {
+    const Outcome refused = run("control " + file.string() + " --set '" + set + "'");
+    EXPECT_EQ(refused.code, 2) << set;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    EXPECT_NE(refused.err.find(words), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(ControlResults, BoundsMayBeOnOneSide) {
   const std::string still = " --json --set parameters.cost=effort --set horizon.free=false --set horizon.duration=1.6";
   const auto active = [&](const std::string& bounds) {

@@ -45,6 +45,35 @@ TEST(DoubleIntegrators, CheapestWaysRestOnTheBoundOfTheSpeed) {
   expect_second_order("two", task, 4.042294070648682, 6.2, false, 2);
 }
 
+// From rest towards x = 1 in a time T: effort, and w (x - 1)^2 at an end that is free. With the force constant over
+// stages the least is w / (1 + w S), S = T^3 / 3 - T h^2 / 12.
+TEST(DoubleIntegrators, ACostOfTheEndIsWeighedAgainstEffort) {
+  constexpr double weight = 5, duration = 2;
+  auto task = task_on<DoubleIntegrator>({0, 0}, {1, 0}, duration);
+  task.free_end.fill(true);
+  task.end_cost = node_condition<Pair<2>, 1>([]<class S>(const PairArrow<S, 2>& p) {
+    return Vector<S, 1>((p.target(0) - 1.0) * (p.target(0) - 1.0) * weight);
+  });
+  for (const long stages : {20L, 100L}) {
+    const auto found = solve_control(task, stages);
+    ASSERT_TRUE(found.report.converged()) << found.report.message;
+    EXPECT_TRUE(found.report.is_strict_minimum());
+    const double h = duration / double(stages);
+    const double s = duration * duration * duration / 3 - duration * h * h / 12;
+    EXPECT_NEAR(found.report.cost, weight / (1 + weight * s), 1e-13);
+    // The costate of x at the end is the slope of that cost there, but for its sign; that of the velocity vanishes.
+    const double off = 1 / (1 + weight * s);
+    EXPECT_NEAR(std::abs(found.costates.back()[0]), 2 * weight * off, 1e-12);
+  }
+  expect_laws(task, 20);
+  task.end_cost = node_condition<Pair<2>, 2>([]<class S>(const PairArrow<S, 2>& p) { return p.target; });
+  EXPECT_THROW(solve_control(task, 20), std::invalid_argument);
+  task.end_cost =
+      node_condition<Pair<2>, 1>([]<class S>(const PairArrow<S, 2>& p) { return Vector<S, 1>(p.target(0)); });
+  task.free_end.fill(false);
+  EXPECT_THROW(solve_control(task, 20), std::invalid_argument);
+}
+
 TEST(PlanarMasses, FastestWithABoundedForce) {
   auto task = task_on<PlanarMass>({0, 0, 1, 0}, {2, 1.5, 0, 0}, 3);
   task.system.cost_of = ControlCost::time;
