@@ -17,10 +17,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <iterator>
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace lagroid::app {
@@ -34,41 +36,58 @@ using multibody::ObservedScene;
 using V = VariedNumber;
 using VariedBodies = BasicSceneBodies<V>;
 
-/// What is observed, by groups, in the order and by the names of the columns that runs record.
-template <class Put> void each_column(const BasicNamedBody<V>& b, const ObservedScene* node, const Put& put) {
-  const auto group = [&](const char* name, const std::vector<std::string>& labels, const auto& values) {
-    for (std::size_t i = 0; i < labels.size(); ++i)
-      put(GradientName{name, labels[i]}, node == nullptr ? V(0) : V(values(*node)(Eigen::Index(i))));
+/// What is observed, by groups, in the order and by the names of the columns that runs record:
+/// group(name, labels(), values(node)), of which one is asked for at every node, and the other once.
+template <class Group> void each_group(const BasicNamedBody<V>& b, const Group& group) {
+  const auto of_body = [&](const char* name, std::initializer_list<std::string_view> labels, const auto& values) {
+    group(
+        name, [&] { return columns(b.name, labels); }, values);
   };
   const multibody::Attitude a = b.body.attitude;
-  group("position", columns(b.name, {"x", "y", "z"}), [&](const ObservedScene& n) { return n(b.body.centre); });
+  of_body("position", {"x", "y", "z"},
+          [&](const ObservedScene& n) -> const multibody::VariedVec& { return n(b.body.centre); });
   if (a.index >= 0) {
-    group("attitude", attitude_of(b.name), [&](const ObservedScene& n) { return n.quaternion(a); });
-    group("spin", columns(b.name, {"M1", "M2", "M3"}), [&](const ObservedScene& n) { return n.spin_of(a); });
-    group("angular_velocity", columns(b.name, {"w1", "w2", "w3"}), [&](const ObservedScene& n) {
-      return multibody::VariedVec(
-          n.spin_of(a).cwiseQuotient(n.model.factors.moments[std::size_t(n.model.places(a).index)]));
+    const auto spin = [&](const ObservedScene& n) -> const multibody::VariedVec& { return n.spin_of(a); };
+    group(
+        "attitude", [&] { return attitude_of(b.name); },
+        [&](const ObservedScene& n) -> const Vector<V, 4>& { return n.quaternion(a); });
+    of_body("spin", {"M1", "M2", "M3"}, spin);
+    of_body("angular_velocity", {"w1", "w2", "w3"}, [&](const ObservedScene& n) -> multibody::VariedVec {
+      return spin(n).cwiseQuotient(n.model.factors.moments[std::size_t(n.model.places(a).index)]);
     });
   }
   if (b.linear < 0) return;
-  const auto momentum = [&](const ObservedScene& n) { return n.momentum_of(b.linear); };
+  const auto momentum = [&](const ObservedScene& n) -> const multibody::VariedVec& { return n.momentum_of(b.linear); };
   if (!b.planar) {
-    group("momentum", columns(b.name, {"px", "py", "pz"}), momentum);
+    of_body("momentum", {"px", "py", "pz"}, momentum);
     return;
   }
   const auto place = [&](const ObservedScene& n) { return std::size_t(n.model.linear_places[std::size_t(b.linear)]); };
-  const auto alone = [](const V& x) { return Vector<V, 1>(x); };
-  group("angle", {column(b.name, "angle")}, [&](const ObservedScene& n) { return alone(n.at.x[place(n)](2)); });
-  group("momentum", columns(b.name, {"px", "py", "L"}), momentum);
-  group("angular_velocity", {column(b.name, "w")},
-        [&](const ObservedScene& n) { return alone(momentum(n)(2) / n.model.factors.inertia[place(n)](2)); });
+  of_body("angle", {"angle"}, [&](const ObservedScene& n) { return Vector<V, 1>(n.at.x[place(n)](2)); });
+  of_body("momentum", {"px", "py", "L"}, momentum);
+  of_body("angular_velocity", {"w"},
+          [&](const ObservedScene& n) { return Vector<V, 1>(momentum(n)(2) / n.model.factors.inertia[place(n)](2)); });
+}
+
+std::vector<GradientName> names_of_observed(const VariedBodies& bodies, bool timed) {
+  std::vector<GradientName> out;
+  for (const BasicNamedBody<V>& b : bodies.bodies)
+    each_group(b, [&](const char* name, const auto& labels, const auto&) {
+      for (const std::string& label : labels()) out.push_back({name, label});
+    });
+  out.push_back({"energy", "energy"});
+  if (timed) out.push_back({"time", "t"});
+  return out;
 }
 
 /// Of steps that vary with the time.
 multibody::VariedNumbers observed(const VariedBodies& bodies, const ObservedScene& node, bool timed) {
   std::vector<V> out;
   for (const BasicNamedBody<V>& b : bodies.bodies)
-    each_column(b, &node, [&](const GradientName&, const V& value) { out.push_back(value); });
+    each_group(b, [&](const char*, const auto&, const auto& values) {
+      const auto& all = values(node);
+      out.insert(out.end(), all.data(), all.data() + all.size());
+    });
   out.push_back(node.kinetic + node.potential);
   if (timed) out.push_back(node.at.time);
   return Eigen::Map<const multibody::VariedNumbers>(out.data(), Eigen::Index(out.size()));
@@ -261,10 +280,7 @@ std::optional<GradientSubject> bodies_gradient(const Section& given) {
   out.system = read.to_check.name;
   out.steps = read.extent.steps;
   const VariedBodies bodies = read_varied_scene(scene, {});
-  for (const BasicNamedBody<V>& b : bodies.bodies)
-    each_column(b, nullptr, [&](const GradientName& name, const V&) { out.observed.push_back(name); });
-  out.observed.push_back({"energy", "energy"});
-  if (controlled) out.observed.push_back({"time", "t"});
+  out.observed = names_of_observed(bodies, controlled);
   name_start(motion, bodies, out);
   std::vector<SceneNumber> numbers;
   ask_for_derivatives(scene, begun_singly, out, numbers);

@@ -72,6 +72,7 @@ class MotionThroughEvents final : public LinearisedMotion {
   /// Why a step is none, where an event is why.
   const std::string& reason() const { return reason_; }
   NodeValues observe() const override { return motion_->observe(); }
+  Eigen::VectorXd seen() const override { return motion_->seen(); }
   void serialize(NumberArchive& archive) override;
 
   /// All of a run: along so many directions, columns of (v, mu, theta), what is observed where events happen, and at a
@@ -129,8 +130,7 @@ class MotionThroughEvents final : public LinearisedMotion {
   /// f(t, seen) by (states, theta, t), where the motion is.
   NodeValues along(const NodeValues& seen, const std::function<VariedVector(const VariedVector&)>& f) const;
   NodeValues function_by(std::size_t event, const NodeValues& seen) const;
-  /// Whether functions change along directions at the start: a row for each event, that of one that does not decide
-  /// false.
+  /// Whether functions change along directions at the start: a row for each event.
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> changes_at_start(const Eigen::MatrixXd& directions) const;
   std::string why_none_at_start(std::size_t event) const;
 

@@ -54,6 +54,8 @@ class LinearisedMotion {
   virtual const StepDerivative& stage(int k) const = 0;
   /// What is observed, at the present node.
   virtual NodeValues observe() const = 0;
+  /// Its values alone.
+  virtual Eigen::VectorXd seen() const { return observe().values; }
 
   /// What is observed later, before the next node, by a part of a step; derivatives are by the state at the present
   /// node. None where that step has no root, or where the motion has no such steps.

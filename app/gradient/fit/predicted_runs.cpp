@@ -27,7 +27,7 @@ class PredictedRuns::Course {
     if (measured.node < 0) return between_nodes(measured.time);
     for (; node_ < measured.node; ++node_)
       if (!advance()) return std::nullopt;
-    return motion_->observe();
+    return here();
   }
 
  private:
@@ -45,7 +45,12 @@ class PredictedRuns::Course {
       if (!advance()) return std::nullopt;
       look_ahead();
     }
-    return time == motion_->time() ? motion_->observe() : motion_->observe_later(time);
+    return time == motion_->time() ? here() : motion_->observe_later(time);
+  }
+  /// At a node, with derivatives where they are asked for.
+  NodeValues here() const {
+    if (directions_.cols() > 0) return motion_->observe();
+    return {motion_->seen(), {}};
   }
   /// When the next node is; the step after that is made again.
   void look_ahead() {

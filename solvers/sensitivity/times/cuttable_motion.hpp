@@ -42,8 +42,7 @@ class CuttableMotion : public LinearisedMotion {
   /// Back to the end that this step had.
   virtual void leave_step() = 0;
 
-  /// What is observed here, alone, and with its derivatives by states, parameters and the time.
-  virtual Eigen::VectorXd seen() const = 0;
+  /// What is observed here, with its derivatives by states, parameters and the time.
   virtual NodeValues observe_in_part() const = 0;
 
   /// How many numbers momenta have; as many are before them among the states.

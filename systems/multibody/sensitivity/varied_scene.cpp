@@ -274,7 +274,7 @@ std::vector<V> VariedScene::rates(const std::vector<VariedVec>& linear, const st
 /// p + D^T mu with D M^{-1} (p + D^T mu) + rate = 0: mu is solved for in plain numbers, and its derivatives follow from
 /// what is left of the equation with that mu.
 void VariedScene::project(const SceneSizes& sizes, double h, std::vector<VariedVec>& linear,
-                          std::vector<VariedVec>& spin) const {
+                          std::vector<VariedVec>& spin) {
   std::vector<int> rows;
   for (const int row : sizes.rows)
     if (model_.role(row) != Role::damping) rows.push_back(row);
@@ -296,11 +296,17 @@ void VariedScene::project(const SceneSizes& sizes, double h, std::vector<VariedV
   };
   for (const Model::Entry& e : model_.rows.linear_entries) put(e, 0);
   for (const Model::Entry& e : model_.rows.rotation_entries) put(e, sizes.linear);
-  std::vector<std::pair<int, int>> pairs;
-  for (const Moved& factor : moved)
-    for (const auto& a : factor.by)
-      for (const auto& b : factor.by) pairs.emplace_back(a.first, b.first);
-  Elimination matrix(int(count), pairs);
+  Elimination& matrix = projection_;
+  if (projection_rows_ == rows) {
+    matrix.clear();
+  } else {
+    std::vector<std::pair<int, int>> pairs;
+    for (const Moved& factor : moved)
+      for (const auto& a : factor.by)
+        for (const auto& b : factor.by) pairs.emplace_back(a.first, b.first);
+    matrix = Elimination(int(count), pairs);
+    projection_rows_ = rows;
+  }
   for (const Moved& factor : moved)
     for (const auto& a : factor.by)
       for (const auto& b : factor.by)

@@ -9,6 +9,7 @@
 /// solves anything, so that values are those of a step that was solved.
 
 #include <lagroid/core/derivatives/varied_directions.hpp>
+#include <lagroid/solvers/linear_algebra/elimination.hpp>
 #include <lagroid/systems/multibody/model.hpp>
 #include <lagroid/systems/multibody/multibody.hpp>
 
@@ -138,7 +139,7 @@ class VariedScene {
   /// D times the velocities of these momenta, and what moves by itself.
   std::vector<V> rates(const std::vector<VariedVec>& linear, const std::vector<VariedVec>& spin, double h) const;
   /// Takes from the momenta what the rows do not allow.
-  void project(const SceneSizes& sizes, double h, std::vector<VariedVec>& linear, std::vector<VariedVec>& spin) const;
+  void project(const SceneSizes& sizes, double h, std::vector<VariedVec>& linear, std::vector<VariedVec>& spin);
 
   Model model_;
   BasicSceneState<V> start_;
@@ -154,6 +155,8 @@ class VariedScene {
   std::vector<RowSize> row_sizes_;
   std::vector<V> multipliers_, values_;
   VariedNumbers equations_, end_, left_out_;
+  Elimination projection_;            ///< D M^{-1} D^T
+  std::vector<int> projection_rows_;  ///< of which it is: its pattern is theirs
 };
 
 /// The numbers of a motion's step.
