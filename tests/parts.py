@@ -104,6 +104,14 @@ class Parts(unittest.TestCase):
             told = run(bin_folder / "parts" / "pendulum" / "lagroid-gradient", examples / f"{scene}.toml")
             self.assertEqual(told.returncode, 2, told.stderr)
             self.assertIn(said, told.stderr)
+        # How often that has happened which is zero at the start depends on where one looks from; what follows does not.
+        turning = '{name = "x", when = "p"}'
+        told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", f"event=[{turning}]", "--of",
+                   "event.x.1.t", "--json")
+        self.assertEqual((told.returncode, told.stdout, len(told.stderr.splitlines())), (2, "", 1), told.stderr)
+        self.assertIn("is zero at the start", told.stderr)
+        self.assertGreater(self.gradient(turning, "--of", "final", "--check")["digits_agreed"], 6)
+        self.gradient(turning, "--of", "event.x.1.t", "--wrt", "parameters.length")
 
     @unittest.skipUnless((bin_folder / "lagroid-gradient").exists(), "of the whole program, built for the nightly tests")
     def test_gradients_keep_the_velocities_that_scenes_give(self):
@@ -276,6 +284,11 @@ class Parts(unittest.TestCase):
         found = self.gradient('{name = "x", when = "q + 1.0", then = "stop"}', "--of", "final.t", "--deviations", "initial.q=0.05",
                               "--draws", "200")
         self.assertGreater(found["draws"]["failed"], 20)
+        # Draws through more or fewer events than the run have ends all the same.
+        passed = self.gradient('{name = "x", when = "q + 1.0", kick = ["0.1"]}', "--of", "final", "--deviations", "initial.q=0.05",
+                               "--draws", "200")["draws"]
+        self.assertEqual(passed["failed"], 0)
+        self.assertGreater(passed["through_other_events"], 20)
         names = '{name = "k", when = "q - 0.5"}, {name = "k.1", when = "q - 0.2"}'
         found = self.gradient(names, "--of", "event.k.1.1.t,event.k.1.t", "--check")
         self.assertLess(found["values"][1], found["values"][0])

@@ -294,6 +294,24 @@ steps = 30
         self.assertEqual(told.returncode, 2, told.stdout)
         self.assertIn("no derivatives through events by controlled steps", told.stderr)
 
+    def test_velocities_that_a_joint_stops_are_projected_away(self):
+        # A bar is welded to the ground, beside a body that flies: of its velocity nothing is left but rounding.
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "welded.toml"
+            scene.write_text("project_velocities = true\n" + "".join(
+                f'[[body]]\nkind = "rigid"\nname = "{name}"\nmass = 1.0\ninertia = [0.1, 0.2, 0.3]\n'
+                f'position = [{at}, 0, 0]\nvelocity = [0.3, 0.1, 0]\n' for name, at in (("bar", 0.5), ("stone", 3))) +
+                '[[joint]]\nkind = "weld"\nbetween = ["ground", "bar"]\npoints = [[0, 0, 0], [-0.5, 0, 0]]\n'
+                '[[effect]]\nkind = "gravity"\n[time]\nstep = 0.01\nsteps = 10\n')
+            told = run(of_part("bodies"), "gradient", scene, "--of", "final.bar.px,final.stone.px", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            at_rest, flying = json.loads(told.stdout)["values"]
+            self.assertLess(abs(at_rest), 1e-14)
+            self.assertAlmostEqual(flying, 0.3, delta=1e-14)
+            told = run(of_part("bodies"), "gradient", scene, "--set", "project_velocities=false")
+            self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
+            self.assertIn("project_velocities = true", told.stderr)
+
     def test_numbers_of_bodies_are_fitted(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = (examples / "spring_pendulum.toml", "--set", "time.steps=200")

@@ -89,11 +89,15 @@ std::unique_ptr<Multibody> motion_of(const Section& scene, SceneBodies& bodies, 
 std::unique_ptr<Multibody> begin(const Section& scene, SceneBodies& bodies, double step,
                                  const multibody::Options& options) {
   std::unique_ptr<Multibody> motion = motion_of(scene, bodies, step, options);
+  const double given = bodies.projects ? motion->given_kinetic_energy() : 0;
   if (bodies.projects) motion->make_tangent();
-  if (const double defect = motion->velocity_defect(); !(defect < joints_hold))
+  if (const double defect = motion->velocity_defect(given); !(defect < joints_hold))
     scene.fail("", fmt::format("the velocities at the start do not agree with the joints (by a share {:.3g}); mend "
-                               "them, or take what the joints allow of them with project_velocities = true",
-                               defect));
+                               "them{}",
+                               defect,
+                               bodies.projects ? ": what the joints allow of them was not found"
+                                               : ", or take what the joints allow of them with project_velocities = "
+                                                 "true"));
   if (!std::isfinite(motion->kinetic_energy(motion->momenta()) + motion->potential_energy()))
     scene.fail("",
                "the energy at the start is no finite number: a velocity or a mass is too large, or bodies that act "

@@ -109,6 +109,7 @@ class Rows {
     std::vector<long> counts(subject_.events.size(), 0);
     for (const auto& each : run_.happened) {
       const long which = counts[each.event]++;
+      require_counted(each.event, "events");
       out.push_back(row_at({.event = int(each.event), .which = which},
                            fmt::format("event.{}.{}.t", subject_.events[each.event], which + 1)));
     }
@@ -121,6 +122,14 @@ class Rows {
     if (number < 1 || number > happened)
       throw GradientRefused(fmt::format("{}: \"{}\" has happened {} times, which are counted from 1", word,
                                         subject_.events[event], happened));
+    require_counted(event, word);
+  }
+  void require_counted(std::size_t event, const std::string& word) const {
+    if (run_.begins[event] != 0)
+      throw GradientRefused(
+          fmt::format("{}: the function of event \"{}\" is zero at the start, and beside it once more "
+                      "or not: which time is which has no derivative; ask for final",
+                      word, subject_.events[event]));
   }
 
   const GradientSubject& subject_;
@@ -312,11 +321,15 @@ void require_events(const std::vector<Event>& events, Motion& motion) try {
   throw std::invalid_argument(error.what());
 }
 
-std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject, const GradientTable& table,
-                                                     const std::vector<Nudge>& nudges) {
+std::optional<ValuesBeside> values_through_events(const GradientSubject& subject, const GradientTable& table,
+                                                  const std::vector<Nudge>& nudges) {
   Runs runs(subject, {}, nudges, ThroughEvents::values_alone);
   const EventSensitivities& whole = runs.to(-1);
-  if (!whole.converged() || which_happened(whole) != table.happened) return std::nullopt;
+  const std::vector<std::size_t> happened = which_happened(whole);
+  // Where one run is stopped and the other is not, or by another event, `final` is another place.
+  const bool same_end =
+      whole.is_stopped == table.is_stopped && (!table.is_stopped || happened.back() == table.happened.back());
+  if (!whole.converged() || !same_end) return std::nullopt;
   Eigen::VectorXd out(Eigen::Index(table.rows.size()));
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const EventSensitivities& run = runs.to(table.event_rows[i].node);
@@ -324,7 +337,7 @@ std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subj
     if (!value) return std::nullopt;
     out(Eigen::Index(i)) = value->value;
   }
-  return out;
+  return ValuesBeside{out, happened == table.happened};
 }
 
 GradientTable differentiate_through_events(const GradientSubject& subject, const std::vector<std::string>& of,
@@ -342,6 +355,7 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
     out.failure = whole.message;
     return out;
   }
+  out.is_stopped = whole.is_stopped;
   if (whole.is_stopped) {
     out.steps = whole.steps + 1;  // the last one in part
     out.notes.push_back(fmt::format("an event stops the run at t = {:.6g}", whole.time));
@@ -384,14 +398,16 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
                : subject.through_events({}, {}, -1, ThroughEvents::start_too).observed_by_start;
   set_growth(out, growth.factor(observed_by_start * growth.along()));
   if (check)
-    compare_with_differences(
-        subject, columns, out,
-        [&](const std::vector<Nudge>& nudges) { return values_through_events(subject, out, nudges); },
-        {.where_none = "end early or have other events",
-         .sizes = sizes,
-         .growth = out.growth,
-         .tolerance = subject.tolerance,
-         .rates = rates_of_passing_nodes(whole, columns, *subject.begin({}, {}))});
+    compare_with_differences(subject, columns, out,
+                             [&](const std::vector<Nudge>& nudges) -> std::optional<Eigen::VectorXd> {
+                               const auto found = values_through_events(subject, out, nudges);
+                               return found && found->same_events ? std::optional(found->values) : std::nullopt;
+                             },
+                             {.where_none = "end early or have other events",
+                              .sizes = sizes,
+                              .growth = out.growth,
+                              .tolerance = subject.tolerance,
+                              .rates = rates_of_passing_nodes(whole, columns, *subject.begin({}, {}))});
   return out;
 }
 

@@ -49,9 +49,9 @@ void go_through_events(const BeginCuttable& begin, const std::vector<ObservedEve
 GradientTable differentiate_through_events(const GradientSubject& subject, const std::vector<std::string>& of,
                                            const std::vector<std::string>& by, bool check);
 
-/// The rows of a table again, of a run that starts from elsewhere; none where it ended early or other events happened.
-std::optional<Eigen::VectorXd> values_through_events(const GradientSubject& subject, const GradientTable& table,
-                                                     const std::vector<Nudge>& nudges);
+/// The same as `values_of`, of a scene with events.
+std::optional<ValuesBeside> values_through_events(const GradientSubject& subject, const GradientTable& table,
+                                                  const std::vector<Nudge>& nudges);
 
 /// Throws std::invalid_argument for events that a run of the motion would refuse.
 void require_events(const std::vector<Event>& events, Motion& motion);

@@ -315,8 +315,8 @@ void find_refused(GradientSubject& subject) {
   });
 }
 
-std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
-                                         const std::vector<Nudge>& nudges) try {
+std::optional<ValuesBeside> values_of(const GradientSubject& subject, const GradientTable& table,
+                                      const std::vector<Nudge>& nudges) try {
   if (subject.through_events) return values_through_events(subject, table, nudges);
   Eigen::VectorXd out(Eigen::Index(table.rows.size()));
   for (std::size_t first = 0; first < table.rows.size();) {
@@ -328,7 +328,7 @@ std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const G
     for (; first < table.rows.size() && place_of(table.rows[first]) == place; ++first)
       out(Eigen::Index(first)) = run.values(table.observed[first]);
   }
-  return out;
+  return ValuesBeside{out};
 } catch (const std::domain_error&) {  // of numbers that a system cannot have
   return std::nullopt;
 }
@@ -380,7 +380,10 @@ GradientTable differentiate(const GradientSubject& subject, const std::vector<st
   fail_where_not_finite(out);
   if (check && out.failure.empty())
     compare_with_differences(subject, columns, out,
-                             [&](const std::vector<Nudge>& nudges) { return values_of(subject, out, nudges); },
+                             [&](const std::vector<Nudge>& nudges) -> std::optional<Eigen::VectorXd> {
+                               const auto found = values_of(subject, out, nudges);
+                               return found ? std::optional(found->values) : std::nullopt;
+                             },
                              {.sizes = growth.sizes(), .growth = out.growth, .tolerance = subject.tolerance});
   return out;
 }

@@ -50,6 +50,7 @@ struct GradientTable {
   std::string failure;                    ///< of a run that ended early
   std::vector<EventRow> event_rows;       ///< through events: what the rows are
   std::vector<std::size_t> happened;      ///< through events: which, in their order
+  bool is_stopped = false;                ///< by the last of these
   std::vector<std::string> notes;         ///< on them
   bool of_boundary_value = false;         ///< its row is the cost
 };
@@ -80,9 +81,14 @@ void set_growth(GradientTable& table, double growth);
 /// Of sixteen.
 double digits_left_by(double growth);
 
-/// The rows of the table, one after another, of a run from a start that differs; none where it ended early.
-std::optional<Eigen::VectorXd> values_of(const GradientSubject& subject, const GradientTable& table,
-                                         const std::vector<Nudge>& nudges);
+/// The rows of a table, one after another, of a run from a start that differs.
+struct ValuesBeside {
+  Eigen::VectorXd values;
+  bool same_events = true;  ///< whether what happened is what the table has, in its order
+};
+/// None where the run ended early, by another event, or before one that a row is of.
+std::optional<ValuesBeside> values_of(const GradientSubject& subject, const GradientTable& table,
+                                      const std::vector<Nudge>& nudges);
 
 /// With a budget the way is back, whatever is cheaper; GradientRefused where there is no such way.
 GradientTable differentiate(const GradientSubject& subject, const std::vector<std::string>& of,

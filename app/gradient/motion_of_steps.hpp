@@ -134,10 +134,14 @@ void require_derivatives_of_steps(const StatedInitialValue<Sys>& value, const Se
   }
   const bool is_explicit = options.mode == TimeMode::transformed ||
                            (options.mode == TimeMode::fixed && options.fixed != StepKind::variational);
-  if (!solved_by_newton(choice) && !is_explicit)
-    scene.fail("time",
-               "gradient takes equal steps, perhaps composed, and adaptive, prescribed or controlled ones, solved by "
-               "Newton to round-off, and explicit ones; leave out without_root = \"controlled\" and [solver]");
+  if (!solved_by_newton(choice) && !is_explicit) {
+    if (options.without_root == WithoutRoot::controlled)
+      scene.section("time", "")
+          .fail("without_root",
+                "steps that a control gives where there is no root have no derivatives; leave it "
+                "out, or take \"constant\" or mode = \"controlled\"");
+    scene.fail("solver", "derivatives are of steps that Newton's iteration solves to round-off; leave it out");
+  }
   if (options.fixed == StepKind::runge_kutta && !HasVariedRates<Sys>)
     scene.fail("time", "the rates of this system have no derivatives; leave out method = \"runge-kutta\"");
   if (options.fixed == StepKind::extrapolation && Sys::object_constraints > 0)

@@ -63,14 +63,15 @@ Uncertainty::Sample sample(const GradientSubject& subject, const GradientTable& 
       ++out.refused;
       continue;
     }
-    const auto values = values_of(subject, table, nudges);
-    if (!values || !values->allFinite()) {
+    const auto found = values_of(subject, table, nudges);
+    if (!found || !found->values.allFinite()) {
       ++out.failed;
       continue;
     }
-    const Eigen::VectorXd off = *values - table.values - mean;
+    if (!found->same_events) ++out.otherwise;
+    const Eigen::VectorXd off = found->values - table.values - mean;
     mean += off / double(++counted);
-    products += off * (*values - table.values - mean).transpose();
+    products += off * (found->values - table.values - mean).transpose();
   }
   if (counted < 2)
     throw GradientRefused(fmt::format(
@@ -137,8 +138,8 @@ InputErrors independent_errors(const GradientSubject& subject, const std::vector
   start.insert(start.end(), parameters.begin(), parameters.end());
   std::vector<std::string> sorted = out.names;
   std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    throw GradientRefused("a start or a parameter has two deviations; give each one");
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+    throw GradientRefused(fmt::format("{}: it has two deviations; give it one", *twice));
   out.covariance = Eigen::Map<const Eigen::VectorXd>(start.data(), Eigen::Index(start.size())).cwiseAbs2().asDiagonal();
   return out;
 }
@@ -277,14 +278,21 @@ std::string text_of(const Uncertainty& u) {
   }
   out += words_of_growth(table);
   if (u.sample) {
-    const double counted = double(u.sample->runs - u.sample->failed - u.sample->refused);
-    out += fmt::format(
-        "  {} runs were drawn{}{}; their deviations are known to {:.2g} %\n", u.sample->runs,
-        u.sample->failed > 0 ? fmt::format(", {} of which ended early", u.sample->failed) : "",
-        u.sample->refused > 0
-            ? fmt::format(", {} of which have numbers that scenes refuse and do not count", u.sample->refused)
-            : "",
-        100 / std::sqrt(2 * (counted - 1)));
+    const Uncertainty::Sample& drawn = *u.sample;
+    const long counted = drawn.runs - drawn.failed - drawn.refused;
+    const auto of_which = [](long some, const char* what) {
+      return some > 0 ? fmt::format(", {} of which {}", some, what) : "";
+    };
+    out += fmt::format("  {} runs were drawn{}{}", drawn.runs,
+                       of_which(drawn.failed, "ended elsewhere, or before what is asked for, and do not count"),
+                       of_which(drawn.refused, "have numbers that scenes refuse and do not count"));
+    out += fmt::format("; deviations of {} are known to {:.2g} %\n",
+                       counted < drawn.runs ? fmt::format("the other {}", counted) : "them",
+                       100 / std::sqrt(2 * (double(counted) - 1)));
+    if (drawn.otherwise > 0)
+      out += fmt::format(
+          "  {} of them go through other events than the run in the middle: of these derivatives know nothing\n",
+          drawn.otherwise);
   }
   return out;
 }
@@ -302,11 +310,9 @@ std::string json_of(const Uncertainty& u) {
   out["deviations"] = vector(u.errors.covariance.diagonal().cwiseSqrt());
   out["covariance"] = matrix(u.covariance);
   if (u.sample)
-    out["draws"] = {{"runs", u.sample->runs},
-                    {"failed", u.sample->failed},
-                    {"refused", u.sample->refused},
-                    {"mean", vector(u.sample->mean)},
-                    {"covariance", matrix(u.sample->covariance)}};
+    out["draws"] = {{"runs", u.sample->runs},         {"failed", u.sample->failed},
+                    {"refused", u.sample->refused},   {"through_other_events", u.sample->otherwise},
+                    {"mean", vector(u.sample->mean)}, {"covariance", matrix(u.sample->covariance)}};
   return out.dump(2);
 }
 

@@ -43,13 +43,16 @@ struct EventSensitivities {
   };
   std::vector<Happened> happened;
   std::vector<std::string> notes;  ///< of functions that are undefined, jump, only touch zero, or are zero at the start
-  long steps = 0;                  ///< that were made whole
-  bool is_stopped = false;         ///< by an event, which is the last that happened
-  double growth = 1;               ///< the largest factor by which directions of the start grew on the way
-  double time = 0;                 ///< of the end: of the last node, or of the event that stopped the run
-  Eigen::MatrixXd by_start;        ///< of (displacement, momentum) at the end, as those of `sensitivities`
-  Eigen::MatrixXd by_parameters;   ///< a column for each
-  Eigen::VectorXd observed;        ///< at the end, or at the node that was asked for
+  /// Of each event: whether its function is zero at the start in its direction, and not beside it. How many times one
+  /// that only records has happened then has no derivative, so that none of its times has.
+  std::vector<char> begins;
+  long steps = 0;                 ///< that were made whole
+  bool is_stopped = false;        ///< by an event, which is the last that happened
+  double growth = 1;              ///< the largest factor by which directions of the start grew on the way
+  double time = 0;                ///< of the end: of the last node, or of the event that stopped the run
+  Eigen::MatrixXd by_start;       ///< of (displacement, momentum) at the end, as those of `sensitivities`
+  Eigen::MatrixXd by_parameters;  ///< a column for each
+  Eigen::VectorXd observed;       ///< at the end, or at the node that was asked for
   Eigen::MatrixXd observed_by_start;
   Eigen::MatrixXd observed_by_parameters;
 

@@ -146,6 +146,7 @@ template <DiscreteSystem Sys> class EventPropagation {
   EventPropagation& operator=(const EventPropagation&) = delete;
 
   EventSensitivities run(long steps) {
+    out_.begins.resize(events_.size());
     out_.parameters.assign(places_.names.begin(), places_.names.begin() + (asked_ - 2 * n));
     base_ = integrator_->point();
     for (std::size_t i = 0; i < events_.size(); ++i) watches_[i].next(value_at(i, base_), base_.time);
@@ -250,8 +251,9 @@ template <DiscreteSystem Sys> class EventPropagation {
     for (std::size_t i = 0; i < events_.size(); ++i) {
       const double value = value_at(i, node);
       if (watches_[i].next(value, node.time)) suspects.push_back(i);
-      if (number == 1 && watches_[i].starts_there() && decides(events_[i]) &&
-          is_in_direction(events_[i].direction, -value, value))
+      if (number != 1 || !watches_[i].starts_there() || !is_in_direction(events_[i].direction, -value, value)) continue;
+      out_.begins[i] = 1;
+      if (decides(events_[i]))
         return fail(SolveStatus::singular, "the function of event \"" + events_[i].name +
                                                "\" is zero at the start, and what follows has no derivative there");
     }

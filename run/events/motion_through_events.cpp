@@ -75,10 +75,9 @@ StepReport MotionThroughEvents::advance() try {
   const std::vector<double> now = values();
   for (std::size_t i = 0; i < events_.size(); ++i) {
     if (watches_[i].next(now[i], time())) suspects.push_back(i);
-    if (steps_ == 1)
-      begins_[i] =
-          watches_[i].starts_there() && events_[i].decides() && is_in_direction(events_[i].direction, -now[i], now[i]);
-    if (steps_ == 1 && begins_[i] != 0 && stays_at_start_[i] == 0) conflict_ = why_none_at_start(i);
+    if (steps_ == 1) begins_[i] = watches_[i].starts_there() && is_in_direction(events_[i].direction, -now[i], now[i]);
+    if (steps_ == 1 && begins_[i] != 0 && events_[i].decides() && stays_at_start_[i] == 0)
+      conflict_ = why_none_at_start(i);
   }
   for (int changes = 0; !suspects.empty() && !is_over_; ++changes) {
     if (changes == most_changes_in_step) {

@@ -74,7 +74,6 @@ Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> MotionThroughEvents::changes_
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> out(Eigen::Index(events_.size()), directions.cols());
   out.setConstant(false);
   for (std::size_t i = 0; i < events_.size(); ++i) {
-    if (!events_[i].decides()) continue;
     const Eigen::RowVectorXd by = function_by(i, seen).derivatives.row(0).head(time_row());
     const Eigen::RowVectorXd terms = by.cwiseAbs() * directions.cwiseAbs();
     out.row(Eigen::Index(i)) = !((by * directions).cwiseAbs().array() <= rounding * terms.array());
@@ -92,7 +91,7 @@ std::vector<std::string> MotionThroughEvents::why_none_along(const Eigen::Matrix
   std::vector<std::string> out(std::size_t(directions.cols()));
   advance();
   for (std::size_t i = 0; i < events_.size(); ++i)
-    for (std::size_t k = 0; k < out.size() && begins_[i] != 0; ++k)
+    for (std::size_t k = 0; k < out.size() && begins_[i] != 0 && events_[i].decides(); ++k)
       if (changes(Eigen::Index(i), Eigen::Index(k))) out[k] = why_none_at_start(i);
   return out;
 }
@@ -316,6 +315,7 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
   } catch (const EventWithoutDerivative& none) {
     fail(SolveStatus::singular, none.what());
   }
+  for (std::size_t i = 0; i < events_.size(); ++i) out.begins.push_back(begins_[i] != 0 && stays_at_start_[i] == 0);
   for (std::size_t i = 0; i < events_.size(); ++i)
     for (const std::string& note : watches_[i].notes(touched_[i]))
       out.notes.push_back(fmt::format("event \"{}\": {}", events_[i].name, note));

@@ -134,8 +134,11 @@ class Multibody {
   /// The largest |C| at this node, and |phi| on the arrow that led here, over the sizes of their terms.
   double constraint_residual() const;
   /// At the start, the largest rate at which a row of a joint is violated by the given velocities, over the size of its
-  /// gradient times them; zero for consistent ones.
-  double velocity_defect() const;
+  /// gradient times them, or over what velocities of this kinetic energy change it by at most, (2 T g M^{-1} g)^(1/2),
+  /// where that is larger: what `make_tangent` leaves may be rounding of what was given. Zero for consistent ones.
+  double velocity_defect(double kinetic_energy = 0) const;
+  /// Of the velocities that were given, with what the joints do not allow.
+  double given_kinetic_energy() const { return kinetic_energy(given()); }
 
   /// The largest c h / (2 m) of a damper, m the inertia that it alone would move. Above one momenta and energies
   /// alternate about those of the motion, which places follow all the same.
@@ -184,6 +187,8 @@ class Multibody {
   double time_scale_rate() const;
   /// Inertia times velocity at this node, projected to satisfy the rows whose role `counts`.
   Momenta tangent(const Model::Counts& counts) const;
+  /// Inertia times velocity at the start: what was given, without the multipliers.
+  Momenta given() const;
   /// Adds to momenta `times` the part that is due to the first multipliers of vakonomic rows.
   void add_multipliers(std::vector<Vec>& linear, std::vector<Vec>& spin, double times) const;
   /// The rate at which a row changes where nothing moves by itself: of grounds that move, of plates that turn.

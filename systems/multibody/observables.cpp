@@ -155,27 +155,34 @@ double Multibody::violation(int switched) const {
   return largest;
 }
 
-double Multibody::velocity_defect() const {
+Multibody::Momenta Multibody::given() const {
+  Momenta out{state_.momentum, state_.spin};
+  add_multipliers(out.linear, out.spin, 1);
+  return out;
+}
+
+double Multibody::velocity_defect(double kinetic_energy) const {
   std::vector<double> rate = imposed_rates();
   std::vector<double> size(rate.size(), 0.0);
   for (std::size_t row = 0; row < rate.size(); ++row) size[row] = std::abs(rate[row]);
-  // Inertia times velocity: what was given, without the multipliers.
-  std::vector<Vec> linear = state_.momentum;
-  std::vector<Vec> spin = state_.spin;
-  add_multipliers(linear, spin, 1);
-  const auto look = [&](const Model::Entry& e, const Vec& velocity) {
+  std::vector<double> response(rate.size(), 0.0);  // g M^{-1} g
+  const Momenta momentum = given();
+  const auto look = [&](const Model::Entry& e, const Vec& of_factor, const Vec& inertia) {
     const Vec& g = state_.gradients[std::size_t(e.gradient)];
+    const Vec velocity = of_factor.cwiseQuotient(inertia);
+    response[std::size_t(e.row)] += g.dot(g.cwiseQuotient(inertia));
     rate[std::size_t(e.row)] += g.dot(velocity);
     size[std::size_t(e.row)] += size_of(g) * size_of(velocity);
   };
   for (const Model::Entry& e : model_.rows.linear_entries)
-    look(e, linear[std::size_t(e.factor)].cwiseQuotient(model_.factors.inertia[std::size_t(e.factor)]));
+    look(e, momentum.linear[std::size_t(e.factor)], model_.factors.inertia[std::size_t(e.factor)]);
   for (const Model::Entry& e : model_.rows.rotation_entries)
-    look(e, spin[std::size_t(e.factor)].cwiseQuotient(model_.factors.moments[std::size_t(e.factor)]));
+    look(e, momentum.spin[std::size_t(e.factor)], model_.factors.moments[std::size_t(e.factor)]);
   double largest = 0;
-  for (std::size_t row = 0; row < rate.size(); ++row)
-    if (model_.rows.roles[row] != Role::damping && size[row] > 0)
-      largest = std::max(largest, std::abs(rate[row]) / size[row]);
+  for (std::size_t row = 0; row < rate.size(); ++row) {
+    const double most = std::max(size[row], std::sqrt(2 * kinetic_energy * response[row]));
+    if (model_.rows.roles[row] != Role::damping && most > 0) largest = std::max(largest, std::abs(rate[row]) / most);
+  }
   return largest;
 }
 

@@ -84,7 +84,8 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   /// angular velocity, v = v1 + i v2 and c = weight1 + i weight2.
   double kovalevskaya_integral(const State<GroupoidType>& s) const;
 
-  /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = I^{-1} M, w0^2 = |weight| / max I.
+  /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = I^{-1} M, w0^2 = 2 |weight| / tr I: smooth in the moments, and of a
+  /// bar the square of its frequency.
   template <class S> S time_scale_rate(const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
     using std::sqrt;
     const auto& moments = varied<S>(inertia);
@@ -92,10 +93,8 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
     const Vector<S, 3> w(mu(0) / moments(0), mu(1) / moments(1), mu(2) / moments(2));
     const Vector<S, 3> load(S(arm(0)), S(arm(1)), S(arm(2)));
     const Vector<S, 3> torque = mu.cross(w) + v.cross(load);
-    Eigen::Index largest = 0;
-    inertia.maxCoeff(&largest);
     S size = w.squaredNorm();
-    if (weight.squaredNorm() > 0) size += sqrt(load.squaredNorm()) / moments(largest);
+    if (weight.squaredNorm() > 0) size += 2.0 * sqrt(load.squaredNorm()) / (moments(0) + moments(1) + moments(2));
     if (!(size > S(0.0))) return S(0.0);
     return -(w(0) * torque(0) / moments(0) + w(1) * torque(1) / moments(1) + w(2) * torque(2) / moments(2)) / size;
   }
