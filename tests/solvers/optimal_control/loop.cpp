@@ -1,49 +1,21 @@
 // Model predictive control: a problem solved anew at every sample, from the last plan and its multipliers.
 #include "../../support/allocation_counter.hpp"
+#include "../satellite_loop.hpp"
 
 #include <lagroid/solvers/control/control_loop.hpp>
 #include <lagroid/systems/control/flows/double_integrator.hpp>
-#include <lagroid/systems/control/flows/satellite_turn.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
 namespace lagroid::optimal_control_loop_tests {
 namespace {
 
-using States = FlowStates<SatelliteTurn::GroupoidType>;
-
-/// Torques at their bounds, and a cone in the way.
-ControlTask<SatelliteTurn> turn() {
-  SatelliteTurn satellite;
-  satellite.avoided << 0.8369922322356853, 0.09964193240901018, 0.5380664350086549;
-  satellite.cone = 0.4363323129985824;
-  States::State end;
-  end << 2 * Vector<double, 3>(0.2, 1, 0.1).normalized(), 0, 0, 0;
-  ControlTask<SatelliteTurn> task{satellite, States::arrow(States::State::Zero(), end, satellite.avoided), 5};
-  task.lower.setConstant(-0.6);
-  task.upper.setConstant(0.6);
-  return task;
-}
-
-/// What chance does to a state.
-class Chance {
- public:
-  explicit Chance(double size) : normal_(0, size) {}
-  Vector<double, 6> operator()() {
-    Vector<double, 6> off;
-    for (double& x : off) x = normal_(generator_);
-    return off;
-  }
-
- private:
-  std::mt19937 generator_{1};
-  std::normal_distribution<double> normal_;
-};
+using satellite_loop::Chance;
+using satellite_loop::turn;
 
 TEST(ControlLoops, ASampleTakesAFewIterations) {
   ControlLoop<SatelliteTurn> loop(turn(), 50);
