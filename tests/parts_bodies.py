@@ -308,6 +308,9 @@ steps = 30
             at_rest, flying = json.loads(told.stdout)["values"]
             self.assertLess(abs(at_rest), 1e-14)
             self.assertAlmostEqual(flying, 0.3, delta=1e-14)
+            told = run(of_part("bodies"), "gradient", scene, "--of", "final.bar.px", "--wrt", "parameters.bar.mass", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            self.assertLess(abs(json.loads(told.stdout)["derivatives"][0][0]), 1e-12)
             told = run(of_part("bodies"), "gradient", scene, "--set", "project_velocities=false")
             self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
             self.assertIn("project_velocities = true", told.stderr)

@@ -144,6 +144,17 @@ std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::s
 
 }  // namespace
 
+void require_loop_scene(const Section& scene, const ControlScene& read) {
+  if (!read.phases.empty()) scene.fail("phase", "a loop looks ahead in one phase; give [horizon]");
+  for (const std::vector<bool>* free : {&read.free_start, &read.free_end})
+    if (std::find(free->begin(), free->end(), true) != free->end())
+      scene.fail("boundary",
+                 "a loop is between states that are given; leave out boundary.free_start and boundary.free_end");
+  if (read.duration_is_free) scene.fail("horizon", "a loop looks ahead for a time that is given; leave out free");
+  if (read.method != ControlMethod::interior_point)
+    scene.fail("solver", "a loop is solved by the interior point method from sample to sample; leave out method");
+}
+
 ControlScene read_control_scene(const Section& scene, std::span<const std::string> states,
                                 std::span<const std::string> controls) {
   ControlScene out;
@@ -185,14 +196,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   out.method = read_method(solver);
   read_search(solver, out.search);
   if (scene.has("loop")) {
-    if (!out.phases.empty()) scene.fail("loop", "looks ahead in one phase; leave out [loop], or give [horizon]");
-    const auto is_free = [](bool free) { return free; };
-    if (std::any_of(out.free_start.begin(), out.free_start.end(), is_free) ||
-        std::any_of(out.free_end.begin(), out.free_end.end(), is_free))
-      scene.fail("loop", "is between states that are given; leave out boundary.free_start and boundary.free_end");
-    if (out.duration_is_free) scene.fail("loop", "looks ahead for a time that is given; leave out horizon.free");
-    if (out.method != ControlMethod::interior_point)
-      scene.fail("loop", "is solved by the interior point method from sample to sample; leave out solver.method");
+    require_loop_scene(scene, out);
     const Section loop = scene.section("loop", "samples");
     out.loop = LoopScene{.samples = read_key(loop, samples_key),
                          .disturbance = read_key(loop, disturbance_key),

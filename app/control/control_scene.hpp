@@ -56,6 +56,9 @@ struct ControlScene {
 ControlScene read_control_scene(const Section& scene, std::span<const std::string> states,
                                 std::span<const std::string> controls);
 
+/// Refuses what a control loop cannot look ahead for. Throws SceneError.
+void require_loop_scene(const Section& scene, const ControlScene& read);
+
 /// The keys of [boundary], [horizon], [[phase]], [bounds], [solver] and [loop] of a problem.
 std::vector<Key> control_scene_keys(const ControlProblem& problem);
 

@@ -36,6 +36,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   using G = typename Sys::GroupoidType;
   using States = FlowStates<G>;
   using State = typename States::State;
+  using Condition = StateCondition<G>;
 
   /// What has the parameters: of a system of the library that is actuated that system.
   static auto& parametrised_of(Sys& sys) {
@@ -109,13 +110,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   std::unique_ptr<SceneLoop> loop(const Section& scene, const std::function<bool(int)>& keep_going) const override {
     const Posed posed = read(scene);
     require_loop(scene);
-    if (!posed.scene.phases.empty()) scene.fail("phase", "a loop looks ahead in one phase; give [horizon]");
-    if (posed.task.start_condition || posed.task.end_condition)
-      scene.fail("boundary", "a loop is between states that are given; leave out free_start and free_end");
-    if (posed.scene.duration_is_free)
-      scene.fail("horizon", "a loop looks ahead for a time that is given; leave out free");
-    if (posed.scene.method != ControlMethod::interior_point)
-      scene.fail("solver", "a loop is solved by the interior point method from sample to sample; leave out method");
+    require_loop_scene(scene, posed.scene);
     return std::make_unique<Loop>(posed, search(posed, keep_going));
   }
 
@@ -172,7 +167,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     const char* const key = at_start ? "start" : "end";
     const ControlTask<Sys>& task = posed.task;
     const std::vector<bool>& free = at_start ? posed.scene.free_start : posed.scene.free_end;
-    if (std::any_of(free.begin(), free.end(), [](bool each) { return each; })) return;
+    if (is_any(free)) return;
     const std::vector<ControlPhase<Sys>> phases = phases_of(task, posed.scene.stages);
     const ControlPhase<Sys>& phase = at_start ? phases.front() : phases.back();
     const G& groupoid = phase.system.groupoid;
@@ -253,23 +248,24 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     const State start = start_of(read);
     const auto pose = [&](const char* key, const std::vector<bool>& free, const State& at, const auto& on, auto& along,
                           auto& condition) {
-      if (std::none_of(free.begin(), free.end(), [](bool each) { return each; })) return;
+      if (!is_any(free)) return;
       require_whole_attitudes(free, [&](const char* why) { scene.section("boundary", "").fail(key, why); });
-      typename StateCondition<G>::Given given{};
+      typename Condition::Given given{};
       bool any = on != nullptr;
       for (std::size_t i = 0; i < given.size(); ++i) {
         given[i] = !free[i] && !is_conserved(i);
         any = any || given[i];
       }
       along.fill(true);
-      if (any) condition = std::make_shared<const StateCondition<G>>(start, at, given, on);
+      if (any) condition = std::make_shared<const Condition>(start, at, given, on);
     };
     pose("free_start", read.free_start, start, read.start_on, task.free_start, task.start_condition);
     pose("free_end", read.free_end, end_of(read), read.end_on, task.free_end, task.end_condition);
     if (read.end_cost)
-      task.end_cost = std::make_shared<const StateCondition<G>>(start, end_of(read),
-                                                                typename StateCondition<G>::Given{}, read.end_cost);
+      task.end_cost =
+          std::make_shared<const Condition>(start, end_of(read), typename Condition::Given{}, read.end_cost);
   }
+  static bool is_any(const std::vector<bool>& of) { return std::find(of.begin(), of.end(), true) != of.end(); }
   static bool is_conserved(std::size_t i) {
     if constexpr (requires { Sys::conserved; }) {
       return Sys::conserved[i];
@@ -297,7 +293,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     }
     const State start = start_of(posed.scene);
     State at = start + before / all * (end_of(posed.scene) - start);
-    typename StateCondition<G>::Given given{};
+    typename Condition::Given given{};
     std::vector<bool> free(given.size(), true);
     bool any = false;
     for (std::size_t i = 0; i < given.size(); ++i) {
@@ -308,7 +304,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     }
     require_whole_attitudes(free, [&](const char* why) { read.table.fail("through", why); });
     if (any) phase.guess = arrow(posed.task.system, start, at);
-    if (any || read.on) phase.end_condition = std::make_shared<const StateCondition<G>>(start, at, given, read.on);
+    if (any || read.on) phase.end_condition = std::make_shared<const Condition>(start, at, given, read.on);
     return phase;
   }
   /// With those of [phase.parameters].
@@ -463,7 +459,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     const auto add = [&](const std::shared_ptr<const NodeCondition<G>>& condition, long stage,
                          const std::string& where) {
       if (!condition) return;
-      for (const std::string& each : static_cast<const StateCondition<G>&>(*condition).words(Sys::states))
+      for (const std::string& each : static_cast<const Condition&>(*condition).words(Sys::states))
         out.conditions[std::size_t(stage)].push_back(each + where);
     };
     add(posed.task.start_condition, 0, " at the start");

@@ -51,7 +51,8 @@ std::optional<std::pair<long, std::string>> number_first(const std::string& word
 
 class Rows {
  public:
-  Rows(const GradientSubject& subject, const EventSensitivities& run) : subject_(subject), run_(run) {}
+  Rows(const GradientSubject& subject, const GradientColumns& columns, const EventSensitivities& run)
+      : subject_(subject), columns_(columns), run_(run) {}
 
   std::vector<Row> of(const std::string& word) const {
     if (word == "final" || word.starts_with("final."))
@@ -125,14 +126,28 @@ class Rows {
     require_counted(event, word);
   }
   void require_counted(std::size_t event, const std::string& word) const {
-    if (run_.begins[event] != 0)
+    const bool is_moved = std::any_of(run_.begun.begin(), run_.begun.end(), [&](const EventSensitivities::Begun& each) {
+      return each.event == event && depends_on(columns_, each);
+    });
+    if (is_moved)
       throw GradientRefused(
           fmt::format("{}: the function of event \"{}\" is zero at the start, and beside it once more "
                       "or not: which time is which has no derivative; ask for final",
                       word, subject_.events[event]));
   }
 
+  /// Whether what is zero at the start changes with some column there.
+  static bool depends_on(const GradientColumns& columns, const EventSensitivities::Begun& begun) {
+    constexpr double rounding = 1e-12;
+    const double most = std::max(largest(begun.by_start), largest(begun.by_parameters));
+    const bool by_start = std::any_of(columns.start.begin(), columns.start.end(),
+                                      [&](int i) { return std::abs(begun.by_start(i)) > rounding * most; });
+    return by_start || largest(begun.by_parameters) > rounding * most;
+  }
+  static double largest(const Eigen::RowVectorXd& row) { return row.size() == 0 ? 0 : row.cwiseAbs().maxCoeff(); }
+
   const GradientSubject& subject_;
+  const GradientColumns& columns_;
   const EventSensitivities& run_;
 };
 
@@ -163,9 +178,16 @@ std::optional<Read> read(const EventSensitivities& run, const EventRow& row) {
   return std::nullopt;
 }
 
-std::vector<std::size_t> which_happened(const EventSensitivities& run) {
+/// What happened of that on which the rows of a table depend, in its order: what decides, and what they are of.
+std::vector<std::size_t> which_happened(const GradientSubject& subject, const GradientTable& table,
+                                        const EventSensitivities& run) {
+  const auto is_asked = [&](std::size_t event) {
+    return std::any_of(table.event_rows.begin(), table.event_rows.end(),
+                       [&](const EventRow& row) { return row.event == int(event); });
+  };
   std::vector<std::size_t> out;
-  for (const auto& each : run.happened) out.push_back(each.event);
+  for (const auto& each : run.happened)
+    if (subject.events_decide[each.event] != 0 || is_asked(each.event)) out.push_back(each.event);
   return out;
 }
 
@@ -276,7 +298,10 @@ std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, con
 }
 
 void go_through_events(const BeginCuttable& begin, const std::vector<ObservedEvent>& events, GradientSubject& subject) {
-  for (const ObservedEvent& event : events) subject.events.push_back(event.name);
+  for (const ObservedEvent& event : events) {
+    subject.events.push_back(event.name);
+    subject.events_decide.push_back(event.decides());
+  }
   subject.begins_through_events = std::none_of(
       events.begin(), events.end(), [](const ObservedEvent& each) { return each.then == Event::Then::stop; });
   subject.begin = [begin, events](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
@@ -325,7 +350,7 @@ std::optional<ValuesBeside> values_through_events(const GradientSubject& subject
                                                   const std::vector<Nudge>& nudges) {
   Runs runs(subject, {}, nudges, ThroughEvents::values_alone);
   const EventSensitivities& whole = runs.to(-1);
-  const std::vector<std::size_t> happened = which_happened(whole);
+  const std::vector<std::size_t> happened = which_happened(subject, table, whole);
   // Where one run is stopped and the other is not, or by another event, `final` is another place.
   const bool same_end =
       whole.is_stopped == table.is_stopped && (!table.is_stopped || happened.back() == table.happened.back());
@@ -337,7 +362,12 @@ std::optional<ValuesBeside> values_through_events(const GradientSubject& subject
     if (!value) return std::nullopt;
     out(Eigen::Index(i)) = value->value;
   }
-  return ValuesBeside{out, happened == table.happened};
+  // Which passage is the K-th is told where all before it are the same.
+  const bool is_of_events =
+      std::any_of(table.event_rows.begin(), table.event_rows.end(), [](const EventRow& row) { return row.event >= 0; });
+  const bool same_events = happened == table.happened;
+  if (is_of_events && !same_events) return std::nullopt;
+  return ValuesBeside{out, same_events};
 }
 
 GradientTable differentiate_through_events(const GradientSubject& subject, const std::vector<std::string>& of,
@@ -349,7 +379,6 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
   const EventSensitivities& whole = runs.to(-1);
   out.steps_solved = whole.steps;
   out.states_kept = 1;
-  out.happened = which_happened(whole);
   out.notes.insert(out.notes.end(), whole.notes.begin(), whole.notes.end());
   if (!whole.converged()) {
     out.failure = whole.message;
@@ -362,7 +391,7 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
   }
   std::vector<Row> rows;
   for (const std::string& word : of)
-    for (Row& row : Rows(subject, whole).of(word))
+    for (Row& row : Rows(subject, columns, whole).of(word))
       if (std::none_of(rows.begin(), rows.end(), [&](const Row& each) { return each.name == row.name; }))
         rows.push_back(std::move(row));
   const auto width = Eigen::Index(out.columns.size());
@@ -387,6 +416,7 @@ GradientTable differentiate_through_events(const GradientSubject& subject, const
     for (std::size_t j = 0; j < columns.parameters.size(); ++j)
       out.derivatives(at, Eigen::Index(columns.start.size() + j)) = found->by_parameters(Eigen::Index(j));
   }
+  out.happened = which_happened(subject, out, whole);
   SizesOfUnits sizes;
   see(subject, subject.begin({}, {})->observe().values, sizes);
   see(subject, whole.observed, sizes);

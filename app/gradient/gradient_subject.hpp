@@ -76,6 +76,7 @@ struct GradientSubject {
   double tolerance = 0;                  ///< to which runs from starts beside each other are values of one function
   std::vector<std::string> notes = {};   ///< on what derivatives hold
   std::vector<std::string> events = {};  ///< of the scene, by their names
+  std::vector<char> events_decide = {};  ///< which of them change the motion or end it; the others only record
   /// The run through them, observed where they happen and at a node, or at the end for -1, by what is asked for; null
   /// in a scene without.
   std::function<EventSensitivities(const std::vector<std::string>& parameters, const std::vector<Nudge>&, long node,

@@ -203,7 +203,10 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
     if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
       require_events(value.extent.events, *prepared.begin());
       const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);
-      for (const SmoothEvent<Sys>& event : events) out.events.push_back(event.name);
+      for (const SmoothEvent<Sys>& event : events) {
+        out.events.push_back(event.name);
+        out.events_decide.push_back(event.decides());
+      }
       out.through_events = [started, observe, events, steps = out.steps, stated = prepared.stated](
                                const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
                                ThroughEvents) {

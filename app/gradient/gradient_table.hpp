@@ -49,8 +49,8 @@ struct GradientTable {
   std::vector<std::string> untold;        ///< of which differences tell nothing
   std::string failure;                    ///< of a run that ended early
   std::vector<EventRow> event_rows;       ///< through events: what the rows are
-  std::vector<std::size_t> happened;      ///< through events: which, in their order
-  bool is_stopped = false;                ///< by the last of these
+  std::vector<std::size_t> happened;      ///< through events: which, in their order, of those that rows depend on
+  bool is_stopped = false;                ///< by the last of what happened
   std::vector<std::string> notes;         ///< on them
   bool of_boundary_value = false;         ///< its row is the cost
 };
@@ -86,7 +86,7 @@ struct ValuesBeside {
   Eigen::VectorXd values;
   bool same_events = true;  ///< whether what happened is what the table has, in its order
 };
-/// None where the run ended early, by another event, or before one that a row is of.
+/// None where the run ended early or by another event, and of rows of events where other ones happened.
 std::optional<ValuesBeside> values_of(const GradientSubject& subject, const GradientTable& table,
                                       const std::vector<Nudge>& nudges);
 

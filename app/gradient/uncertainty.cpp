@@ -283,15 +283,18 @@ std::string text_of(const Uncertainty& u) {
     const auto of_which = [](long some, const char* what) {
       return some > 0 ? fmt::format(", {} of which {}", some, what) : "";
     };
-    out += fmt::format("  {} runs were drawn{}{}", drawn.runs,
-                       of_which(drawn.failed, "ended elsewhere, or before what is asked for, and do not count"),
-                       of_which(drawn.refused, "have numbers that scenes refuse and do not count"));
+    out +=
+        fmt::format("  {} runs were drawn{}{}", drawn.runs,
+                    of_which(drawn.failed,
+                             "failed, or ended elsewhere or through other events than are asked for, and do not count"),
+                    of_which(drawn.refused, "have numbers that scenes refuse and do not count"));
     out += fmt::format("; deviations of {} are known to {:.2g} %\n",
                        counted < drawn.runs ? fmt::format("the other {}", counted) : "them",
                        100 / std::sqrt(2 * (double(counted) - 1)));
     if (drawn.otherwise > 0)
       out += fmt::format(
-          "  {} of them go through other events than the run in the middle: of these derivatives know nothing\n",
+          "  {} of those that count go through other events than the run in the middle: of these derivatives know "
+          "nothing\n",
           drawn.otherwise);
   }
   return out;

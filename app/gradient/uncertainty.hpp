@@ -52,7 +52,7 @@ struct Uncertainty {
   /// The same of runs that were drawn.
   struct Sample {
     long runs = 0;
-    long failed = 0;     ///< of these, which ended elsewhere, or before what is asked for, and do not count
+    long failed = 0;     ///< of these, which failed, or ended elsewhere, and do not count
     long refused = 0;    ///< of these, whose numbers no scene may have, as a negative length, and which do not count
     long otherwise = 0;  ///< of those that count, through other events than the run in the middle
     Eigen::VectorXd mean;

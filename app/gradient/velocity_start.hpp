@@ -72,6 +72,7 @@ inline void follow_start(const Eigen::MatrixXd& slope, EventSensitivities& run) 
   };
   follow(run.by_start, run.by_parameters);
   follow(run.observed_by_start, run.observed_by_parameters);
+  for (EventSensitivities::Begun& each : run.begun) follow(each.by_start, each.by_parameters);
   for (EventSensitivities::Happened& each : run.happened) {
     follow(each.by_start, each.by_parameters);
     follow(each.observed_by_start, each.observed_by_parameters);

@@ -43,9 +43,14 @@ struct EventSensitivities {
   };
   std::vector<Happened> happened;
   std::vector<std::string> notes;  ///< of functions that are undefined, jump, only touch zero, or are zero at the start
-  /// Of each event: whether its function is zero at the start in its direction, and not beside it. How many times one
-  /// that only records has happened then has no derivative, so that none of its times has.
-  std::vector<char> begins;
+  /// An event whose function is zero at the start in its direction, and what that depends on there. How many times one
+  /// that only records has happened has no derivative along what moves it off zero.
+  struct Begun {
+    std::size_t event;
+    Eigen::RowVectorXd by_start;
+    Eigen::RowVectorXd by_parameters;
+  };
+  std::vector<Begun> begun;
   long steps = 0;                 ///< that were made whole
   bool is_stopped = false;        ///< by an event, which is the last that happened
   double growth = 1;              ///< the largest factor by which directions of the start grew on the way

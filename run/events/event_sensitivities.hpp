@@ -69,6 +69,8 @@ template <DiscreteSystem Sys> struct SmoothEvent {
   std::vector<Setting> set = {};
 
   bool changes_motion() const { return kick || !set.empty(); }
+  /// Whether the motion depends on when it happens.
+  bool decides() const { return changes_motion() || then == Event::Then::stop; }
 };
 
 namespace detail {
@@ -146,7 +148,6 @@ template <DiscreteSystem Sys> class EventPropagation {
   EventPropagation& operator=(const EventPropagation&) = delete;
 
   EventSensitivities run(long steps) {
-    out_.begins.resize(events_.size());
     out_.parameters.assign(places_.names.begin(), places_.names.begin() + (asked_ - 2 * n));
     base_ = integrator_->point();
     for (std::size_t i = 0; i < events_.size(); ++i) watches_[i].next(value_at(i, base_), base_.time);
@@ -252,8 +253,9 @@ template <DiscreteSystem Sys> class EventPropagation {
       const double value = value_at(i, node);
       if (watches_[i].next(value, node.time)) suspects.push_back(i);
       if (number != 1 || !watches_[i].starts_there() || !is_in_direction(events_[i].direction, -value, value)) continue;
-      out_.begins[i] = 1;
-      if (decides(events_[i]))
+      const Eigen::RowVectorXd by = value_of(i, base_).derivatives.row(0);
+      out_.begun.push_back({i, by.head(2 * n), by.segment(2 * n, asked_ - 2 * n)});
+      if (events_[i].decides())
         return fail(SolveStatus::singular, "the function of event \"" + events_[i].name +
                                                "\" is zero at the start, and what follows has no derivative there");
     }
@@ -287,16 +289,11 @@ template <DiscreteSystem Sys> class EventPropagation {
     fail(SolveStatus::left_domain, "step " + std::to_string(number) + ": the function of an event is no finite number");
   }
 
-  /// Whether the motion depends on when it happens.
-  static bool decides(const SmoothEvent<Sys>& event) {
-    return event.changes_motion() || event.then == Event::Then::stop;
-  }
-
   void look_into_rest(const std::vector<std::size_t>& suspects, std::vector<std::size_t>& next) {
     std::vector<Found> found;
     for (const std::size_t i : suspects)
       for (const FoundInStep& each : watches_[i].find([&](double share) { return value_at(i, cut(share)); }))
-        if (each.passing == Passing::touching && !decides(events_[i])) {
+        if (each.passing == Passing::touching && !events_[i].decides()) {
           ++touched_[i];
         } else {
           found.push_back({i, each.share, each.passing});

@@ -130,8 +130,8 @@ class MotionThroughEvents final : public LinearisedMotion {
   /// f(t, seen) by (states, theta, t), where the motion is.
   NodeValues along(const NodeValues& seen, const std::function<VariedVector(const VariedVector&)>& f) const;
   NodeValues function_by(std::size_t event, const NodeValues& seen) const;
-  /// Whether functions change along directions at the start: a row for each event.
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> changes_at_start(const Eigen::MatrixXd& directions) const;
+  /// How functions change along directions at the start, zero where that is rounding: a row for each event.
+  Eigen::MatrixXd changes_at_start(const Eigen::MatrixXd& directions) const;
   std::string why_none_at_start(std::size_t event) const;
 
   // Rows of the directions of a part.

@@ -65,34 +65,32 @@ NodeValues MotionThroughEvents::function_by(std::size_t event, const NodeValues&
   });
 }
 
-Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> MotionThroughEvents::changes_at_start(
-    const Eigen::MatrixXd& directions) const {
+Eigen::MatrixXd MotionThroughEvents::changes_at_start(const Eigen::MatrixXd& directions) const {
   constexpr double rounding = 1e-12;
   NodeValues seen = motion_->observe();
   seen.derivatives.conservativeResize(Eigen::NoChange, time_row() + 1);
   seen.derivatives.col(time_row()).setZero();
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> out(Eigen::Index(events_.size()), directions.cols());
-  out.setConstant(false);
+  Eigen::MatrixXd out(Eigen::Index(events_.size()), directions.cols());
   for (std::size_t i = 0; i < events_.size(); ++i) {
     const Eigen::RowVectorXd by = function_by(i, seen).derivatives.row(0).head(time_row());
-    const Eigen::RowVectorXd terms = by.cwiseAbs() * directions.cwiseAbs();
-    out.row(Eigen::Index(i)) = !((by * directions).cwiseAbs().array() <= rounding * terms.array());
+    const Eigen::RowVectorXd terms = by.cwiseAbs() * directions.cwiseAbs(), along = by * directions;
+    out.row(Eigen::Index(i)) = (along.array().abs() <= rounding * terms.array()).select(0.0, along.array());
   }
   return out;
 }
 
 void MotionThroughEvents::begin_along(const Eigen::MatrixXd& directions) {
-  const auto changes = changes_at_start(directions);
-  for (std::size_t i = 0; i < events_.size(); ++i) stays_at_start_[i] = !changes.row(Eigen::Index(i)).any();
+  const Eigen::MatrixXd changes = changes_at_start(directions);
+  for (std::size_t i = 0; i < events_.size(); ++i) stays_at_start_[i] = changes.row(Eigen::Index(i)).isZero(0);
 }
 
 std::vector<std::string> MotionThroughEvents::why_none_along(const Eigen::MatrixXd& directions) {
-  const auto changes = changes_at_start(directions);
+  const Eigen::MatrixXd changes = changes_at_start(directions);
   std::vector<std::string> out(std::size_t(directions.cols()));
   advance();
   for (std::size_t i = 0; i < events_.size(); ++i)
     for (std::size_t k = 0; k < out.size() && begins_[i] != 0 && events_[i].decides(); ++k)
-      if (changes(Eigen::Index(i), Eigen::Index(k))) out[k] = why_none_at_start(i);
+      if (changes(Eigen::Index(i), Eigen::Index(k)) != 0) out[k] = why_none_at_start(i);
   return out;
 }
 
@@ -277,6 +275,7 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
     if (is_over_) return see(motion_->observe_in_part(), end, out);
     see_node();
   };
+  const Eigen::MatrixXd at_start = changes_at_start(directions);
   try {
     begin_along(directions);
     if (node == 0) see_node();
@@ -315,7 +314,12 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
   } catch (const EventWithoutDerivative& none) {
     fail(SolveStatus::singular, none.what());
   }
-  for (std::size_t i = 0; i < events_.size(); ++i) out.begins.push_back(begins_[i] != 0 && stays_at_start_[i] == 0);
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    if (begins_[i] == 0) continue;
+    EventSensitivities::Begun& each = out.begun.emplace_back();
+    each.event = i;
+    split(at_start.row(Eigen::Index(i)), each.by_start, each.by_parameters);
+  }
   for (std::size_t i = 0; i < events_.size(); ++i)
     for (const std::string& note : watches_[i].notes(touched_[i]))
       out.notes.push_back(fmt::format("event \"{}\": {}", events_[i].name, note));

@@ -125,12 +125,8 @@ template <class Sys> class TranscriptionOf final : public Transcription {
               bounds_[i].holds(phase) ? bounds_[i].sign * (path.controls[at](bounds_[i].control) - bounds_[i].of(phase))
                                       : not_there;
       }
-    for (std::size_t i = 0; i < conditions_.size(); ++i) {
-      const PlacedCondition& at = conditions_[i];
-      double cost = 0;
-      at.psi->values(task_.system.groupoid, latest.nodes[i], at.is_cost() ? &cost : out.equality[at.stage] + at.row);
-      out.cost[at.stage][0] += cost;
-    }
+    for (std::size_t i = 0; i < conditions_.size(); ++i)
+      conditions_[i].put_values(task_.system.groupoid, latest.nodes[i], out);
   }
 
   void derivatives(const StageRows& lambda, const StageRows& z, StageDerivatives& out) const override {
@@ -158,7 +154,8 @@ template <class Sys> class TranscriptionOf final : public Transcription {
           if (duration_bounds_[i].holds(phase) && begins(k, p))
             rows[(Sys::inequalities + int(i) + 1) * d - 1] = duration_bounds_[i].sign;
       }
-    for (std::size_t i = 0; i < conditions_.size(); ++i) add_condition(i, lambda, out);
+    for (std::size_t i = 0; i < conditions_.size(); ++i)
+      conditions_[i].put_derivatives(task_.system.groupoid, now_.nodes[i], lambda, out);
   }
 
   void sizes_of_displaced(TrajectoryDisplacement& out) const override {
@@ -177,7 +174,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     A product = groupoid.unit(groupoid.target(first));
     if (start_is_free_) tried_.path.start = groupoid.project(groupoid.compose(*now_.path.start, first));
     std::size_t condition = 0;
-    for (; condition < conditions_.size() && conditions_[condition].node == 0; ++condition)
+    for (; condition < conditions_.size() && conditions_[condition].node() == 0; ++condition)
       tried_.nodes[condition] = start_is_free_ ? *tried_.path.start : product;
     for (long k = 0; k < sizes_.stages; ++k) {
       const auto at = std::size_t(k);
@@ -189,7 +186,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       } else {
         displace_next(groupoid, now_.path.arrows[at], node(k + 1), back, tried_.path.arrows[at], product);
       }
-      for (; condition < conditions_.size() && conditions_[condition].node == k + 1; ++condition)
+      for (; condition < conditions_.size() && conditions_[condition].node() == k + 1; ++condition)
         tried_.nodes[condition] =
             start_is_free_ ? groupoid.project(groupoid.compose(*tried_.path.start, product)) : product;
       for (int i = 0; i < Sys::controls; ++i)
@@ -213,15 +210,6 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   static constexpr double not_there = -1;
 
   bool begins(long stage, std::size_t phase) const { return stage == (phase == 0 ? 0 : sizes_.phases[phase - 1].end); }
-  /// psi of a node, in a row of the stage that ends there; of the first, in stage 0. Or a cost, in that of the stage.
-  struct PlacedCondition {
-    static constexpr int cost = -1;
-    std::shared_ptr<const NodeCondition<G>> psi;
-    long node;
-    long stage;
-    int row;
-    bool is_cost() const { return row == cost; }
-  };
   struct Standing {
     ControlTrajectory<Sys> path;
     A boundary;
@@ -260,7 +248,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       if (!psi) return;
       const long stage = std::max(node - 1, 0L);
       int& count = sizes_.conditions[std::size_t(stage)];
-      conditions_.push_back({psi, node, stage, Sys::equalities + count});
+      conditions_.emplace_back(psi, node, Sys::equalities + count);
       count += psi->size();
     };
     sizes_.conditions.assign(std::size_t(sizes_.stages), 0);
@@ -283,8 +271,7 @@ template <class Sys> class TranscriptionOf final : public Transcription {
       };
       place(node_condition<G, Sys::end_equalities>(psi), sizes_.stages);
     }
-    if (task_.end_cost)
-      conditions_.push_back({task_.end_cost, sizes_.stages, sizes_.stages - 1, PlacedCondition::cost});
+    if (task_.end_cost) conditions_.emplace_back(task_.end_cost, sizes_.stages, PlacedCondition<G>::cost);
     sizes_.node_equality = *std::max_element(sizes_.conditions.begin(), sizes_.conditions.end());
     sizes_.equality = Sys::equalities + sizes_.node_equality;
   }
@@ -306,36 +293,11 @@ template <class Sys> class TranscriptionOf final : public Transcription {
     A product = now_.path.start ? *now_.path.start : groupoid.unit(groupoid.source(now_.path.arrows.front()));
     long k = 0;
     for (std::size_t i = 0; i < conditions_.size(); ++i) {
-      for (; k < conditions_[i].node; ++k)
+      for (; k < conditions_[i].node(); ++k)
         product = groupoid.project(groupoid.compose(product, now_.path.arrows[std::size_t(k)]));
       now_.nodes[i] = product;
     }
   }
-  /// Rows and Hessian of a condition, or gradient and Hessian of a cost: along the node alone.
-  void add_condition(std::size_t i, const StageRows& lambda, StageDerivatives& out) const {
-    const PlacedCondition& at = conditions_[i];
-    const int size = at.psi->size();
-    std::vector<double>& rows = condition_rows_;
-    std::vector<double>& hessian = condition_hessian_;
-    rows.resize(std::size_t(size * n));
-    hessian.assign(std::size_t(n * n), 0.0);
-    static constexpr double once = 1;
-    at.psi->derivatives(task_.system.groupoid, now_.nodes[i], at.is_cost() ? &once : lambda[at.stage] + at.row,
-                        rows.data(), hessian.data());
-    const int begin = at.node == 0 ? 0 : n;
-    if (at.is_cost()) {
-      for (int q = 0; q < n; ++q) out.gradient[at.stage][begin + q] += rows[std::size_t(q)];
-    } else {
-      double* equality = out.equality[at.stage] + at.row * d;
-      std::fill(equality, equality + size * d, 0.0);
-      for (int r = 0; r < size; ++r)
-        std::copy(rows.begin() + r * n, rows.begin() + (r + 1) * n, equality + r * d + begin);
-    }
-    double* square = out.hessian[at.stage];
-    for (int r = 0; r < n; ++r)
-      for (int q = 0; q < n; ++q) square[(begin + r) * d + begin + q] += hessian[std::size_t(r * n + q)];
-  }
-
   /// Systems that know <lambda, phi> without each of phi: second derivatives are its alone.
   static constexpr bool weighs =
       requires(const Sys& system, const A& g, const Vector<double, Sys::controls>& u, double h, const double* lambda) {
@@ -496,11 +458,10 @@ template <class Sys> class TranscriptionOf final : public Transcription {
   bool end_is_fixed_ = true;
   std::vector<PhaseDurationBound<Sys>> duration_bounds_;
   std::vector<PhaseControlBound<Sys>> bounds_;
-  std::vector<PlacedCondition> conditions_;
+  std::vector<PlacedCondition<G>> conditions_;
   TranscriptionSizes sizes_;
   Standing now_, tried_;
   bool has_tried_ = false;  // since it stands there
-  mutable std::vector<double> condition_rows_, condition_hessian_;
 };
 
 }  // namespace lagroid

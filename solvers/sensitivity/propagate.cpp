@@ -57,8 +57,10 @@ std::string failure(const StepReport& report, double time) {
         "the step at t = {:.6g} has no root: no size near that of the last step solves its equations; take another "
         "first step, or equal ones",
         time);
-  const char* remedy = report.status == SolveStatus::singular ? "change the step or the state" : "use a smaller step";
-  return fmt::format("the step at t = {:.6g} failed: {}; {}", time, to_string(report.status), remedy);
+  const bool is_too_long = report.status == SolveStatus::not_converged || report.status == SolveStatus::stagnated ||
+                           report.status == SolveStatus::not_finite;
+  return fmt::format("the step at t = {:.6g} failed: {}{}", time, to_string(report.status),
+                     is_too_long ? "; use a smaller step" : "");
 }
 
 /// Takes down what a step is like that begins at this time; whether it converged.

@@ -84,8 +84,8 @@ struct HeavyTop : System<HeavyTop, Action<SO3, RotatedDirections>> {
   /// angular velocity, v = v1 + i v2 and c = weight1 + i weight2.
   double kovalevskaya_integral(const State<GroupoidType>& s) const;
 
-  /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = I^{-1} M, w0^2 = 2 |weight| / tr I: smooth in the moments, and of a
-  /// bar the square of its frequency.
+  /// Of sigma = (w0^2 + |w|^2)^(-1/2), w = I^{-1} M, w0^2 = 2 |weight| / tr I: smooth in the moments, and for a
+  /// bar w0 is the frequency of small swings.
   template <class S> S time_scale_rate(const Vector<S, 3>& v, const Vector<S, 3>& mu) const {
     using std::sqrt;
     const auto& moments = varied<S>(inertia);

@@ -69,10 +69,14 @@ constexpr double agreed = 1e-5;      ///< of that: differences that are off by l
 constexpr double settled = 1e-9;     ///< of that: no others are tried
 
 constexpr double usual = 2e-3;  ///< width of a difference, in sizes of its number
+/// How often some row, or what it does not show, changes by its own size where the number does by its.
+double steepest_of(const Eigen::ArrayXd& exact, const RowScales& rows, double size, double rate) {
+  return size * std::max(rate, (rows.scales > 0).select(exact.abs() / rows.scales, 0.0).maxCoeff());
+}
 /// Of differences, one after another: of the usual width, and narrower ones. Where some row is steep, or what it does
 /// not show, that changes by its own size where the number changes by less than its.
 std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows, double size, double rate) {
-  const double steepest = size * std::max(rate, (rows.scales > 0).select(exact.abs() / rows.scales, 0.0).maxCoeff());
+  const double steepest = steepest_of(exact, rows, size, rate);
   std::vector<double> out{usual * size};
   if (steepest > 3)
     for (const double narrower : {1.0, 0.1}) out.push_back(narrower * usual * size / steepest);
@@ -80,29 +84,26 @@ std::vector<double> widths_of(const Eigen::ArrayXd& exact, const RowScales& rows
   return out;
 }
 
-/// What the values are known to, three times over, by those beside each other: what is left of nine so near that a
-/// straight line has them but for rounding. None of terms that cancel is seen in a value. None where some has no value.
-std::optional<Eigen::ArrayXd> noise_beside(const ValuesAt& values, double size) {
-  constexpr int to_each_side = 4;
-  constexpr double apart = 1e-10;
-  std::vector<Eigen::ArrayXd> found;
-  for (int k = -to_each_side; k <= to_each_side; ++k) {
-    const std::optional<Eigen::VectorXd> value = values(k * apart * size);
+/// What the values are known to, three times over, by nine beside each other, so near that a polynomial of degree three
+/// has them but for rounding: fourth differences, of which each has 70 times the variance of a value (Moré and Wild,
+/// Estimating computational noise, SIAM J. Sci. Comput. 33 (2011), section 3). Of terms that cancel a value shows
+/// nothing. None where some has no value.
+std::optional<Eigen::ArrayXd> noise_beside(const ValuesAt& values, double apart) {
+  constexpr int order = 4;
+  constexpr double variance = 70;
+  std::vector<Eigen::ArrayXd> left;
+  for (int k = -4; k <= 4; ++k) {
+    const std::optional<Eigen::VectorXd> value = values(k * apart);
     if (!value) return std::nullopt;
-    found.push_back(value->array());
+    left.push_back(value->array());
   }
-  const auto count = double(found.size());
-  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(found.front().size()), slope = mean, squares = mean;
-  double spread = 0;
-  for (int k = -to_each_side; k <= to_each_side; ++k) {
-    const Eigen::ArrayXd& value = found[std::size_t(k + to_each_side)];
-    mean += value / count;
-    slope += k * (value - found.front());
-    spread += k * k;
+  for (int taken = 0; taken < order; ++taken) {
+    for (std::size_t i = 0; i + 1 < left.size(); ++i) left[i] = (left[i + 1] - left[i]).eval();
+    left.pop_back();
   }
-  for (int k = -to_each_side; k <= to_each_side; ++k)
-    squares += (found[std::size_t(k + to_each_side)] - mean - k * slope / spread).square();
-  return 3 * (squares / (count - 2)).sqrt();
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(left.front().size());
+  for (const Eigen::ArrayXd& each : left) squares += each.square();
+  return 3 * (squares / (variance * double(left.size()))).sqrt();
 }
 
 /// Of a column of derivatives, at a size of its number, of values that are known to the noise of their rows.
@@ -158,7 +159,9 @@ Compared compare_column(const Eigen::ArrayXd& exact, RowScales rows, const Value
   Compared out = compare_column_by(exact, rows, values, size, rate);
   const Booleans contradicted = out.told_otherwise && !out.agrees;
   if (!contradicted.any()) return out;
-  const std::optional<Eigen::ArrayXd> noise = noise_beside(values, size);
+  constexpr double narrow = 1e-10, narrowest = 1e-14;  // of which the changed number has some ulps
+  const double apart = std::max(narrowest, narrow / std::max(1.0, steepest_of(exact, rows, size, rate)));
+  const std::optional<Eigen::ArrayXd> noise = noise_beside(values, apart * size);
   if (!noise || (*noise <= rows.noise || !contradicted).all()) return out;
   rows.noise = rows.noise.max(*noise);
   return compare_column_by(exact, rows, values, size, rate);

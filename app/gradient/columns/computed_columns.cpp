@@ -44,6 +44,11 @@ class WithColumns final : public LinearisedMotion {
   }
 
   NodeValues observe() const override { return completed(motion_->observe(), motion_->time()); }
+  Eigen::VectorXd seen() const override {
+    const Eigen::VectorXd own = motion_->seen();
+    return completed({own, Eigen::MatrixXd(own.size(), 0)}, motion_->time()).values;
+  }
+  LinearisedMotion& without_columns() { return *motion_; }
   std::optional<NodeValues> observe_later(double time) override {
     const auto own = motion_->observe_later(time);
     if (!own) return std::nullopt;
@@ -69,6 +74,7 @@ class WithColumns final : public LinearisedMotion {
   }
   /// The chain rule, of number `used` among parameters, the time and columns.
   void add(NodeValues& out, Eigen::Index row, std::size_t used, double by) const {
+    if (out.derivatives.cols() == 0) return;
     const std::size_t first_column = values_.size() + (with_time_ ? 1 : 0);
     if (used >= first_column) {
       out.derivatives.row(row) += by * out.derivatives.row(Eigen::Index(used - first_column));
@@ -155,6 +161,10 @@ GradientSubject with_columns(const GradientSubject& subject, const std::vector<N
     for (const std::string& name : parameters) places.push_back(place_of(subject, name));
     return std::make_unique<WithColumns>(subject.begin(parameters, nudges), computed, values, places, with_time);
   };
+  if (subject.begin_along)
+    out.begin_along = [begin_along = subject.begin_along](LinearisedMotion& begun, const Eigen::MatrixXd& directions) {
+      begin_along(dynamic_cast<WithColumns&>(begun).without_columns(), directions);
+    };
   return out;
 }
 

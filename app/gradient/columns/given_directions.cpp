@@ -139,6 +139,7 @@ class MotionByNumbers final : public LinearisedMotion {
   int stages() const override { return int(stages_.size()); }
   const StepDerivative& stage(int k) const override { return stages_[std::size_t(k)]; }
   NodeValues observe() const override { return by_scene(of_system_->observe()); }
+  Eigen::VectorXd seen() const override { return of_system_->seen(); }
   std::optional<NodeValues> observe_later(double time) override {
     const auto seen = of_system_->observe_later(time);
     if (!seen) return std::nullopt;
@@ -148,6 +149,14 @@ class MotionByNumbers final : public LinearisedMotion {
   void keep_node(std::unique_ptr<KeptNode>& node) override { of_system_->keep_node(node); }
   void return_to(const KeptNode& node) override { of_system_->return_to(node); }
   void serialize(NumberArchive& archive) override { of_system_->serialize(archive); }
+
+  LinearisedMotion& of_system() { return *of_system_; }
+  /// Of directions of (v, mu, numbers of the scene) those of the system.
+  Eigen::MatrixXd of_system(const Eigen::MatrixXd& directions) const {
+    Eigen::MatrixXd out(states() + slope_.rows(), directions.cols());
+    out << directions.topRows(states()), slope_ * directions.bottomRows(slope_.cols());
+    return out;
+  }
 
  private:
   NodeValues by_scene(const NodeValues& seen) const { return {seen.values, by_numbers(seen.derivatives, slope_)}; }
@@ -164,6 +173,7 @@ EventSensitivities by_numbers(EventSensitivities run, const Eigen::MatrixXd& slo
   };
   change(run.by_parameters);
   change(run.observed_by_parameters);
+  for (auto& each : run.begun) change(each.by_parameters);
   for (auto& each : run.happened) {
     change(each.by_parameters);
     change(each.observed_by_parameters);
@@ -186,6 +196,11 @@ GradientSubject in_numbers_of_the_scene(const GradientSubject& subject, const st
       const NudgedNumbers numbers(given, nudges);
       return std::make_unique<MotionByNumbers>(begin(numbers.reached(parameters), numbers.of_system()),
                                                numbers.slope(parameters));
+    };
+  if (subject.begin_along)
+    out.begin_along = [begin_along = subject.begin_along](LinearisedMotion& begun, const Eigen::MatrixXd& directions) {
+      auto& by_numbers = dynamic_cast<MotionByNumbers&>(begun);
+      begin_along(by_numbers.of_system(), by_numbers.of_system(directions));
     };
   if (subject.refusal)
     out.refusal = [given, refusal = subject.refusal](const std::vector<Nudge>& nudges) {

@@ -434,15 +434,25 @@ std::vector<VariedScene::Held> VariedScene::held(const SceneSizes& sizes) {
     if (batch.role == Role::holonomic && model_.is_on(batch))
       batch.joints->values(here, batch.first, batch.count, values_.data() + batch.row);
   const std::vector<V> rate = rates(momentum_, spin_, start_.step);
-  std::vector<double> size(rate.size(), 0.0);
+  std::vector<double> size(rate.size(), 0.0), response(rate.size(), 0.0);
   const auto look = [&](const Model::Entry& e, const VariedVec& momentum, const VariedVec& inertia) {
-    size[std::size_t(e.row)] += values_of(gradients_[std::size_t(e.gradient)]).norm() *
-                                values_of(momentum).cwiseQuotient(values_of(inertia)).norm();
+    const Vec g = values_of(gradients_[std::size_t(e.gradient)]), m = values_of(inertia);
+    size[std::size_t(e.row)] += g.norm() * values_of(momentum).cwiseQuotient(m).norm();
+    response[std::size_t(e.row)] += g.dot(g.cwiseQuotient(m));
   };
   for (const Model::Entry& e : model_.rows.linear_entries)
     look(e, momentum_[std::size_t(e.factor)], model_.factors.inertia[std::size_t(e.factor)]);
   for (const Model::Entry& e : model_.rows.rotation_entries)
     look(e, spin_[std::size_t(e.factor)], model_.factors.moments[std::size_t(e.factor)]);
+  // Of what is projected nothing but rounding of what was given may be left (Multibody::velocity_defect).
+  double twice_kinetic = 0;
+  const auto add = [&](const VariedVec& momentum, const VariedVec& inertia) {
+    twice_kinetic += values_of(momentum).dot(values_of(momentum).cwiseQuotient(values_of(inertia)));
+  };
+  for (std::size_t f = 0; f < start_.momentum.size(); ++f) add(start_.momentum[f], model_.factors.inertia[f]);
+  for (std::size_t r = 0; r < start_.spin.size(); ++r) add(start_.spin[r], model_.factors.moments[r]);
+  for (std::size_t row = 0; row < size.size(); ++row)
+    size[row] = std::max(size[row], std::sqrt(twice_kinetic * response[row]));
   std::vector<Held> out;
   // Those that depend on others have to hold, too.
   for (const Model::Batch& batch : model_.rows.batches) {

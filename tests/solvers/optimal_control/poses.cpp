@@ -181,13 +181,18 @@ TEST(ControlOnSE2, DerivativesAndOptimality) { expect_laws(dubins({0, 0, 0}, {4,
 // How far a car ends from a place, and how it is turned there, weighed against the effort of its turns.
 TEST(ControlOnSE2, DerivativesAndOptimalityWithACostOfTheEnd) {
   auto task = dubins({0, 0, 0}, {4, 2, 1}, 1, 5);
-  task.system.cost_of = ControlCost::effort;
-  task.duration_is_free = false;
   task.free_end.fill(true);
   task.end_cost = node_condition<SE2, 1>([]<class S>(const Matrix<S, 3, 3>& p) {
     const S x = p(0, 2) - 3.0, y = p(1, 2) - 2.0;
-    return Vector<S, 1>(x * x + y * y + p(1, 0) * 0.5);
+    return Vector<S, 1>((x * x + y * y + p(1, 0) * 0.5) * 4.0);
   });
+  expect_laws(task, 20);
+  // Beside a start on a line, from where the way is turned at will, and an end on a circle.
+  task.free_start = {true, false, true};
+  task.start_condition =
+      node_condition<SE2, 1>([]<class S>(const Matrix<S, 3, 3>& p) { return Vector<S, 1>(p(1, 2) + p(0, 2)); });
+  task.end_condition = node_condition<SE2, 1>(
+      []<class S>(const Matrix<S, 3, 3>& p) { return Vector<S, 1>(p(0, 2) * p(0, 2) + p(1, 2) * p(1, 2) - 9.0); });
   expect_laws(task, 20);
 }
 

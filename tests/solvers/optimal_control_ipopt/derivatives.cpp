@@ -87,6 +87,9 @@ TEST(ProgramOfIpopt, HasTheDerivativesOfItsValues) {
   to_a_line.free_start = {true, false, false};
   to_a_line.free_end = {false, false, true};
   expect_derivatives(to_a_line);
+  to_a_line.end_cost = node_condition<SE2, 1>(
+      []<class S>(const Matrix<S, 3, 3>& p) { return Vector<S, 1>(p(0, 2) * p(1, 2) + p(1, 0) * p(1, 0)); });
+  expect_derivatives(to_a_line);
   auto through_a_gate = dubins();
   const auto gate = node_condition<SE2, 1>(
       []<class S>(const Matrix<S, 3, 3>& p) { return Vector<S, 1>(p(0, 2) + p(1, 2) * p(1, 2) - 2.5); });
