@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -180,6 +181,13 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
       ends.fail(end_cost_key.name,
                 "where the end is given this is the same for all motions; name in free_end what may differ from it");
     out.end_cost = formulas_of(ends, end_cost_key.name, {read_key_or(ends, end_cost_key, "")}, states);
+    std::vector<double> numbers(1 + states.size() + states.size() * states.size());
+    out.end_cost->values(out.end.data(), numbers.data());
+    out.end_cost->derivatives(out.end.data(), numbers.data() + 1);
+    if (!std::all_of(numbers.begin(), numbers.end(), [](double each) { return std::isfinite(each); }))
+      ends.fail(end_cost_key.name,
+                "it, or a derivative of it, is no finite number at boundary.end, where the search begins; give another "
+                "formula or end");
   }
   constexpr double none = std::numeric_limits<double>::infinity();
   out.bounds = read_bounds(scene.section_or_empty("bounds"), controls, ControlBounds(controls.size(), {-none, none}));

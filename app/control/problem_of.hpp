@@ -399,7 +399,10 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.controls = controls();
     out.by_ipopt = posed.scene.method == ControlMethod::ipopt;
     out.report = best.report;
-    if (!best.report.converged()) out.report.message += guess_that_went_to_nothing(posed, best.trajectory);
+    if (!best.report.converged()) {
+      out.report.message += guess_that_went_to_nothing(posed, best.trajectory);
+      if (posed.task.end_cost) out.report.message += "; or does boundary.end_cost fall without end?";
+    }
     out.crossover = best.crossover;
     out.outcomes = found.outcomes;
     out.iterations = found.iterations;

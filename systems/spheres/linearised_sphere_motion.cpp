@@ -44,29 +44,28 @@ Eigen::Matrix<double, 3, 2> tangent_frame(const Vector<double, 3>& q) {
 
 Eigen::MatrixXd tangent_directions(const SphereIntegrator::Points& z, const Eigen::VectorXd& coordinates,
                                    SphereIntegrator::Points& moved) {
-  using Scalar = VariedNumber;
-  using Space = CotangentSpheres<Eigen::Dynamic, Scalar>;
+  using V = VariedNumber;
+  using VariedSpheres = CotangentSpheres<Eigen::Dynamic, V>;
   const int k = int(z.cols());
-  const Space space{{k}};
+  const VariedSpheres space{{k}};
   Eigen::MatrixXd by(6 * k, 4 * k);
   moved = z;
   detail::for_directions(4 * k, [&](int first) {
     const auto coordinate = [&](int i) {
       const int direction = i - first;
-      return 0 <= direction && direction < varied_at_once ? Scalar::variable(coordinates(i), direction)
-                                                          : Scalar(coordinates(i));
+      return 0 <= direction && direction < varied_at_once ? V::variable(coordinates(i), direction) : V(coordinates(i));
     };
     auto turn = space.zero_algebra();
     auto point = space.zero_point();
     for (int i = 0; i < k; ++i) {
       const Vector<double, 3> q = z.col(i).head<3>();
       const Eigen::Matrix<double, 3, 2> frame = tangent_frame(q);
-      const auto along = [&](int at) -> Vector<Scalar, 3> {
+      const auto along = [&](int at) -> Vector<V, 3> {
         return frame.col(0) * coordinate(at) + frame.col(1) * coordinate(at + 1);
       };
-      const Vector<Scalar, 3> from = q.cast<Scalar>();
-      Space::set(turn, i, cross(from, along(2 * i)), Vector<Scalar, 3>::Zero());
-      Space::set(point, i, from, z.col(i).tail<3>().cast<Scalar>() + along(2 * (k + i)));
+      const Vector<V, 3> from = q.cast<V>();
+      VariedSpheres::set(turn, i, cross(from, along(2 * i)), Vector<V, 3>::Zero());
+      VariedSpheres::set(point, i, from, z.col(i).tail<3>().cast<V>() + along(2 * (k + i)));
     }
     space.act(turn, point);
     const auto at = point.reshaped();

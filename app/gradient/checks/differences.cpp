@@ -1,5 +1,7 @@
 #include "differences.hpp"
 
+#include "../../reading/scene_reader.hpp"
+
 #include <lagroid/core/derivatives/extrapolated_difference.hpp>
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,14 +29,16 @@ std::string unit_of_row(const GradientSubject& subject, const GradientTable& tab
 }
 
 constexpr double usual_size = 1e-2;
-/// The change of column j by which some row changes by a hundredth of its size: the unit of a number that is zero.
+/// The change of column j by which some row changes by a hundredth of its size: the unit of a number that is zero. What
+/// hardly changes a row by a usual size is rounding, and tells none.
 double size_by_what_it_does(const GradientTable& table, const Eigen::ArrayXd& scales, Eigen::Index j) {
   std::map<double, double> largest;  // the derivative, by the size that rows of a unit share
   for (Eigen::Index i = 0; i < scales.size(); ++i)
     largest[scales(i)] = std::max(largest[scales(i)], std::abs(table.derivatives(i, j)));
   double size = std::numeric_limits<double>::infinity();
+  constexpr double least = 1e-10;
   for (const auto& [scale, slope] : largest)
-    if (scale > 0 && slope > 0) size = std::min(size, 1e-2 * scale / slope);
+    if (scale > 0 && slope * usual_size > least * scale) size = std::min(size, 1e-2 * scale / slope);
   return std::isfinite(size) ? size : usual_size;
 }
 /// That of a number of the start, or a hundredth of the largest in its group: their unit is one. Zero where all are.
@@ -246,8 +251,12 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
         return values({nudges[j]});
       } catch (const NothingBeside& reason) {
         why = reason.what();
-        return std::nullopt;
+      } catch (const SceneError& refusal) {
+        why = fmt::format("are refused ({})", refusal.problem());
+      } catch (const std::invalid_argument& refusal) {
+        why = fmt::format("are refused ({})", refusal.what());
       }
+      return std::nullopt;
     };
     Compared compared = compare_column(exact, rows, nudged, sizes[j], rate);
     // A derivative that is rounding says nothing of sizes.

@@ -272,8 +272,9 @@ TEST_F(ControlResults, ACostOfTheEndIsAFormula) {
   ASSERT_EQ(r.code, 0) << r.err;
   const double s = 8.0 / 3 - 2 * 0.01 / 12;
   EXPECT_NEAR(json::parse(r.out).at("cost").get<double>(), 5 / (1 + 5 * s), 1e-12);
-  for (const auto& [set, words] :
-       {std::pair{"boundary.free_end=[]", "end_cost"}, {"boundary.end_cost=\"5*(z - 1)\"", "z"}}) {
+  for (const auto& [set, words] : {std::pair{"boundary.free_end=[]", "end_cost"},
+                                   {"boundary.end_cost=\"sqrt(x - 1)\"", "no finite number at boundary.end"},
+                                   {"boundary.end_cost=\"5*(z - 1)\"", "z"}}) {
     const Outcome refused = run("control " + file.string() + " --set '" + set + "'");
     EXPECT_EQ(refused.code, 2) << set;
     EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
