@@ -315,6 +315,22 @@ steps = 30
             self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
             self.assertIn("project_velocities = true", told.stderr)
 
+    def test_places_on_which_a_plane_motion_hardly_depends_are_checked(self):
+        # Two bars are welded together and fly in a plane: off it the place of their joint has no effect but rounding.
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "bars.toml"
+            scene.write_text('project_velocities = true\n' + "".join(
+                f'[[body]]\nkind = "rigid"\nname = "{name}"\nmass = {mass}\ninertia = [0.2, 0.2, 0.3]\n'
+                f'position = [{at}, 0, 0]\nvelocity = {velocity}\n' for name, mass, at, velocity in
+                (("a", 1.0, 0, [1, 0, 0]), ("b", 3.0, 1, [-1, 2, 0]))) +
+                '[[joint]]\nkind = "weld"\nbetween = ["a", "b"]\npoints = [[0.5, 0, 0], [-0.5, 0, 0]]\n'
+                '[time]\nstep = 0.01\nsteps = 100\n')
+            told = run(of_part("bodies"), "gradient", scene, "--of", "final.a.x", "--wrt",
+                       "parameters.joint.0.place,parameters.a.mass", "--check", "--json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            found = json.loads(told.stdout)
+            self.assertEqual((found["contradicted"], found["untold"]), ([], []))
+
     def test_numbers_of_bodies_are_fitted(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = (examples / "spring_pendulum.toml", "--set", "time.steps=200")
