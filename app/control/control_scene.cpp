@@ -151,9 +151,11 @@ void require_loop_scene(const Section& scene, const ControlScene& read) {
     if (std::find(free->begin(), free->end(), true) != free->end())
       scene.fail("boundary",
                  "a loop is between states that are given; leave out boundary.free_start and boundary.free_end");
-  if (read.duration_is_free) scene.fail("horizon", "a loop looks ahead for a time that is given; leave out free");
+  if (read.duration_is_free)
+    scene.fail("horizon", "a loop looks ahead for a time that is given; leave out horizon.free");
   if (read.method != ControlMethod::interior_point)
-    scene.fail("solver", "a loop is solved by the interior point method from sample to sample; leave out method");
+    scene.fail("solver",
+               "a loop is solved by the interior point method from sample to sample; leave out solver.method");
 }
 
 ControlScene read_control_scene(const Section& scene, std::span<const std::string> states,
