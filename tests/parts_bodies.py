@@ -19,6 +19,13 @@ def turned(rotation, x):
     return [a * math.cos(angle) + b * math.sin(angle) + c * along * (1 - math.cos(angle)) for a, b, c in zip(x, cross, k)]
 
 
+def projected_bars(inertia, *bars):
+    """The bodies of a scene, each of (name, mass, place along x, velocity), with what joints allow of their velocities."""
+    return "project_velocities = true\n" + "".join(
+        f'[[body]]\nkind = "rigid"\nname = "{name}"\nmass = {mass}\ninertia = {inertia}\n'
+        f"position = [{at}, 0, 0]\nvelocity = {velocity}\n" for name, mass, at, velocity in bars)
+
+
 class Bodies(unittest.TestCase):
     def test_gradients_of_scenes_of_bodies(self):
         # Free bodies and tops, chains and closed loops, springs and dampers, rolling and steering, a support that moves.
@@ -298,9 +305,8 @@ steps = 30
         # A bar is welded to the ground, beside a body that flies: of its velocity nothing is left but rounding.
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder) / "welded.toml"
-            scene.write_text("project_velocities = true\n" + "".join(
-                f'[[body]]\nkind = "rigid"\nname = "{name}"\nmass = 1.0\ninertia = [0.1, 0.2, 0.3]\n'
-                f'position = [{at}, 0, 0]\nvelocity = [0.3, 0.1, 0]\n' for name, at in (("bar", 0.5), ("stone", 3))) +
+            scene.write_text(
+                projected_bars([0.1, 0.2, 0.3], ("bar", 1.0, 0.5, [0.3, 0.1, 0]), ("stone", 1.0, 3, [0.3, 0.1, 0])) +
                 '[[joint]]\nkind = "weld"\nbetween = ["ground", "bar"]\npoints = [[0, 0, 0], [-0.5, 0, 0]]\n'
                 '[[effect]]\nkind = "gravity"\n[time]\nstep = 0.01\nsteps = 10\n')
             told = run(of_part("bodies"), "gradient", scene, "--of", "final.bar.px,final.stone.px", "--json")
@@ -319,10 +325,8 @@ steps = 30
         # Two bars are welded together and fly in a plane: off it the place of their joint has no effect but rounding.
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder) / "bars.toml"
-            scene.write_text('project_velocities = true\n' + "".join(
-                f'[[body]]\nkind = "rigid"\nname = "{name}"\nmass = {mass}\ninertia = [0.2, 0.2, 0.3]\n'
-                f'position = [{at}, 0, 0]\nvelocity = {velocity}\n' for name, mass, at, velocity in
-                (("a", 1.0, 0, [1, 0, 0]), ("b", 3.0, 1, [-1, 2, 0]))) +
+            scene.write_text(
+                projected_bars([0.2, 0.2, 0.3], ("a", 1.0, 0, [1, 0, 0]), ("b", 3.0, 1, [-1, 2, 0])) +
                 '[[joint]]\nkind = "weld"\nbetween = ["a", "b"]\npoints = [[0.5, 0, 0], [-0.5, 0, 0]]\n'
                 '[time]\nstep = 0.01\nsteps = 100\n')
             told = run(of_part("bodies"), "gradient", scene, "--of", "final.a.x", "--wrt",
