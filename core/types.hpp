@@ -50,7 +50,12 @@ constexpr long double value_of(long double x) { return x; }
 
 /// How many numbers a value has side by side, and one of them: more than one has Batch (core/scalars/batch.hpp).
 template <class T> constexpr int lanes_in(const T&) { return 1; }
-template <class T> constexpr double in_lane(const T& value, int) { return double(value); }
+template <class T> constexpr double in_lane(const T& value, int lane) {
+  if constexpr (std::is_arithmetic_v<T>)
+    return double(value);
+  else
+    return in_lane(value_of(value), lane);  // a derivative of a derivative
+}
 
 /// a where the condition holds, b elsewhere: what formulas write in place of a branch, so that they serve scalars with
 /// lanes (core/scalars/batch.hpp) too, lane by lane. Both are evaluated.

@@ -54,7 +54,9 @@ const KeyOf<NumberArray> direction_key = vector_key("direction", "", "fixed in t
 const KeyOf<NumberArray> axis_key = vector_key("axis", "", "of the cone, in space");
 const KeyOf<Number> at_least_key{"at_least", {an_angle}, "rad", "of direction from axis: outside of a cone", {}, "any"};
 const KeyOf<Number> at_most_key{"at_most", {an_angle}, "rad", "of direction from axis: inside of a cone", {}, "any"};
-const KeyOf<Number> speed_key{"speed", {positive}, "m/s", "of its centre, at most", {}, "any"};
+const KeyOf<NumberArray> limited_point =
+    vector_key("at", "m", "the point that is limited, in the body's frame", Vec::Zero());
+const KeyOf<Number> speed_key{"speed", {positive}, "m/s", "of its centre, or of the point at, at most", {}, "any"};
 const KeyOf<Text> name_key{"name", {}, "", "what messages call it", {}, "by its kind, its body and where it is"};
 const KeyOf<Number> angular_speed_key{"angular_speed", {positive}, "rad/s", "of its turning, at most", {}, "any"};
 
@@ -74,7 +76,9 @@ const std::vector<LimitKind>& limit_kinds() {
       {"cone",
        "a direction of a body that turns in space keeps off another, or near it",
        {name_key, body_key, direction_key, axis_key, at_least_key, at_most_key}},
-      {"speed", "a body does not move or turn faster", {name_key, body_key, speed_key, angular_speed_key}}};
+      {"speed",
+       "a body, or a point of it, does not move or turn faster",
+       {name_key, body_key, limited_point, speed_key, angular_speed_key}}};
   return all;
 }
 KeyOf<OneOf> kind_key(const std::vector<LimitKind>& kinds) {
@@ -200,7 +204,7 @@ class Reader {
     keep_out.kind = kind;
     const Attachment point = point_of(table, kept_point, body);
     keep_out.site = point.site;
-    const std::string of = point.arm.isZero(0) ? body.name : fmt::format("{} at {}", body.name, numbers_of(point.arm));
+    const std::string of = point_name(body, point.arm);
     if (keep_out.kind == KeepOut::Kind::plane) {
       keep_out.centre = vector(table, on_plane_key);
       keep_out.normal = unit(table, normal_key);
@@ -257,12 +261,18 @@ class Reader {
     if (!table.has(speed_key.name) && !table.has(angular_speed_key.name))
       table.fail("", "give speed (m/s) or angular_speed (rad/s), the largest that it may have");
     if (table.has(speed_key.name)) {
-      if (body.linear < 0) table.fail("speed", fmt::format("\"{}\" is held at its pivot", body.name));
       SpeedLimit& limit = out_.task.speed_limits.emplace_back();
-      limit.linear = body.linear;
+      const Attachment point = moving_point(table, speed_key, body);
+      if (point.arm.isZero(0))
+        limit.linear = body.linear;
+      else
+        limit.site = point.site;
       if (body.planar) limit.axes = {0, 1};
-      limit.most = largest(table, speed_key, body, body.velocity.norm(), "m/s");
-      name_speed(table, speed_key, body, "speed limit", limit);
+      const Vec velocity = body.velocity + body.angular_velocity.cross(Vec(body.attitude * point.arm));
+      limit.most = largest(table, speed_key, body, velocity.norm(), "m/s");
+      name_speed(table, speed_key, body, point.arm, "speed limit", limit);
+    } else if (table.has(limited_point.name)) {
+      table.fail(limited_point.name, "is the point that speed is of: give speed, or leave it out");
     }
     if (!table.has(angular_speed_key.name)) return;
     const bool turns = body.planar || body.body.attitude.index >= 0;
@@ -275,17 +285,29 @@ class Reader {
       limit.attitude = body.body.attitude;
     }
     limit.most = largest(table, angular_speed_key, body, body.angular_velocity.norm(), "rad/s");
-    name_speed(table, angular_speed_key, body, "limit of angular speed", limit);
+    name_speed(table, angular_speed_key, body, Vec::Zero(), "limit of angular speed", limit);
   }
-  void name_speed(const Section& table, const KeyOf<Number>& key, const NamedBody& body, const char* what,
-                  SpeedLimit& limit) {
-    limit.name = fmt::format("{} of {}", what, body.name);
+  void name_speed(const Section& table, const KeyOf<Number>& key, const NamedBody& body, const Vec& arm,
+                  const char* what, SpeedLimit& limit) {
+    limit.name = fmt::format("{} of {}", what, point_name(body, arm));
     if (table.has(name_key.name)) {
       limit.name = read_key_or(table, name_key, {});
       if (table.has(speed_key.name) && table.has(angular_speed_key.name)) limit.name += ", " + key.name;
     }
-    require_new(table, fmt::format("{} {} {}", key.name, body.name, limit.most));
+    require_new(table, fmt::format("{} {} {} {}", key.name, body.name, exactly(arm), limit.most));
   }
+
+  /// The point at, of which a key speaks: it moves.
+  Attachment moving_point(const Section& table, const KeyOf<Number>& key, const NamedBody& body) {
+    Attachment point = point_of(table, limited_point, body);
+    if (body.linear < 0 && point.arm.isZero(0))
+      table.fail(key.name, fmt::format("\"{}\" is held at its pivot: give a point of it by at", body.name));
+    return point;
+  }
+  static std::string point_name(const NamedBody& body, const Vec& arm) {
+    return arm.isZero(0) ? body.name : fmt::format("{} at {}", body.name, numbers_of(arm));
+  }
+
   /// Of what a constraint says; an earlier one that says it, too, makes multipliers ambiguous.
   void require_new(const Section& table, const std::string& says) {
     const auto [before, is_new] = said_.try_emplace(says, constraints_);

@@ -91,7 +91,8 @@ class ControlledScene {
                                             FactorEnd right);
   /// Of what was evaluated last, with the momenta of a factor varied to the right; -1: of none.
   void end_values(const ControlledNode& node, int momenta_right, std::vector<SecondNumber>& out);
-  /// W (mu - D^T nu) at a node: velocities, and angular ones in the bodies.
+  /// W (mu - D^T nu) at a node: velocities, and angular ones in the bodies; behind them, three numbers each, those of
+  /// the points whose speed is limited.
   std::vector<double> velocities(const ControlledNode& node);
   /// The same of what was evaluated last, as `end_values`.
   void velocities(const ControlledNode& node, int momenta_right, std::vector<SecondNumber>& out);

@@ -89,11 +89,12 @@ struct DirectionCone {
   }
 };
 
-/// How fast a body may be at every node: sum_i v_i^2 / most^2 <= 1, of the velocity of its centre or of its angular
-/// velocity in the body, as an end has them (SceneEnd), along these axes.
+/// How fast a body may be at every node: sum_i v_i^2 / most^2 <= 1, of the velocity of its centre, of its angular
+/// velocity in the body, as an end has them (SceneEnd), or of the velocity of a point of it, along these axes.
 struct SpeedLimit {
   int linear = -1;                    ///< Scene::linear_of; -1: the limit is on the turning of
-  Attitude attitude = {};             ///< this one
+  Attitude attitude = {};             ///< this one, or, where that is none,
+  Site site = {};                     ///< on this point
   std::vector<int> axes = {0, 1, 2};  ///< of a planar body 0 and 1, and 2 of its turning
   double most = 1;                    ///< m/s or rad/s
   std::string name = {};              ///< in messages; empty: its number

@@ -84,12 +84,14 @@ std::vector<double> ControlledScene::velocities(const ControlledNode& node) {
   std::vector<double> out;
   std::copy_n(node.momenta.data(), n(), momenta_.begin());
   conditions_.velocities(forces(node), momenta_, out);
+  limits_.add_points(*plain_, out);
   return out;
 }
 
 void ControlledScene::velocities(const ControlledNode& node, int momenta_right, std::vector<SecondNumber>& out) {
   vary_momenta(node, momenta_right);
   conditions_.velocities(*varied_, varied_momenta_, out);
+  limits_.add_points(*varied_, out);
 }
 
 }  // namespace lagroid::multibody

@@ -54,7 +54,7 @@ SceneTranscription::SceneTranscription(ControlledScene& scene, ScenePath start, 
   along_.resize(scene.n(), scene.joints());
   reaction_.resize(scene.joints(), scene.joints());
   slope_.resize(scene.n());
-  slopes_of_velocities_.resize(scene.n(), scene.n());
+  slopes_of_velocities_.resize(scene.n() + 3 * scene.limits().points(), scene.n());
   bent_.resize(scene.joints());
 }
 
@@ -403,7 +403,7 @@ void SceneTranscription::add_momenta(const ControlledNode& node, bool is_last, c
         const int i = limits.on_places() + k;
         put(limits.value_of_speed(k, varied_velocities_), out.z[i], out.inequality + i * variables_, left, right);
       }
-      for (int i = 0; i < scene_.n() && left == 0; ++i)
+      for (int i = 0; i < int(slopes_of_velocities_.rows()) && left == 0; ++i)
         for (int j = 0; j < 3; ++j)
           slopes_of_velocities_(i, 3 * right + j) = varied_velocities_[std::size_t(i)].right(j);
     }

@@ -290,6 +290,14 @@ TEST_F(Control, LimitsOfBodiesSayWhatIsWrongWithThem) {
           "\"fore\" does not turn in space");
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'fore'\n", "give speed (m/s) or angular_speed (rad/s)");
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'fore'\nspeed = 0\n", "positive");
+  refused("arm_of_bodies", "kind = 'speed'\nbody = 'fore'\nangular_speed = 1\nat = [1, 0, 0]\n",
+          "constraint.4.at: is the point that speed is of: give speed, or leave it out");
+  const std::string wheel =
+      "[[body]]\nname = 'wheel'\nkind = 'pivoted'\ninertia = [1, 1, 2]\nangular_velocity = [0, 0, 3]\n";
+  refused("arm_of_bodies", "kind = 'speed'\nbody = 'wheel'\nspeed = 1\n" + wheel,
+          "\"wheel\" is held at its pivot: give a point of it by at");
+  refused("arm_of_bodies", "kind = 'speed'\nbody = 'wheel'\nat = [0, 0.5, 1]\nspeed = 1\n" + wheel,
+          "\"wheel\" has 1.5 m/s at the start");
   const std::string falls = "[[body]]\nname = 'ball'\nkind = 'point'\nmass = 1\nposition = [5, 5, 5]\n";
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'ball'\nangular_speed = 1\n" + falls, "does not turn");
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'ball'\nspeed = 1\n" + falls + "velocity = [2, 0, 0]\n",
@@ -300,6 +308,7 @@ TEST_F(Control, LimitsOfBodiesAreActiveInWhatIsWritten) {
   const fs::path out = folder_ / "limited";
   const fs::path file = write(text_of("arm_of_bodies") +
                               "\n[[constraint]]\nkind = 'speed'\nbody = 'fore'\nspeed = 1.5\n"
+                              "[[constraint]]\nkind = 'speed'\nbody = 'fore'\nat = [0.5, 0, 0]\nspeed = 2\n"
                               "[[effect]]\nkind = 'drag'\nbodies = ['fore']\nmotion = 0.2\nturning = 0.1\n");
   const std::string set = "control " + file.string() + " --json --set horizon.stages=30 --set solver.starts=4";
   const Outcome r = run(set + " --out " + out.string());
@@ -317,6 +326,9 @@ TEST_F(Control, LimitsOfBodiesAreActiveInWhatIsWritten) {
   for (const auto& row : rows)
     fastest = std::max(fastest, std::hypot(row.at(column("fore.vx")), row.at(column("fore.vy"))));
   EXPECT_NEAR(fastest, 1.5, 1e-9);
+  std::vector<std::string> active;
+  for (const auto& each : found.at("active")) active.push_back(each.at("name").get<std::string>());
+  EXPECT_TRUE(std::count(active.begin(), active.end(), "speed limit of fore at (0.5, 0, 0)")) << r.out;
   const Outcome by_ipopt = run(set + " --set solver.method=ipopt");
   if (by_ipopt.code == 2) {
     EXPECT_NE(by_ipopt.err.find("install coinor-libipopt-dev"), std::string::npos) << by_ipopt.err;

@@ -21,7 +21,9 @@ SceneControl free_bodies() {
                     {FreeBodies::of_corner, KeepOut::Kind::disk, {-0.5, 0.5, 0}, 0.3}};
   task.cones = {{FreeBodies::of_box, {0, 0.6, 0.8}, {1, 0, 0}, 0.9, DirectionCone::Side::outside},
                 {FreeBodies::of_box, {0, 0, 1}, {0, 0, 1}, 1.4, DirectionCone::Side::inside}};
-  task.speed_limits = {{.linear = 1, .most = 1.2}, {.attitude = FreeBodies::of_box, .axes = {0, 2}, .most = 0.8}};
+  task.speed_limits = {{.linear = 1, .most = 1.2},
+                       {.attitude = FreeBodies::of_box, .axes = {0, 2}, .most = 0.8},
+                       {.site = FreeBodies::of_corner, .most = 1.1}};
   task.end.places = {{FreeBodies::of_corner, 0, 0.5}, {FreeBodies::of_bob, 2, 0.1}};
   task.end.turns = {{FreeBodies::of_box, Quaternion(0.8, 0.6, 0, 0)}};
   task.end.velocities = {{0, 1, 0.3}};
@@ -37,7 +39,9 @@ template <class Written = Machine> SceneControl machine(Retraction rotation) {
   task.actuators = {{"rail"}, {"joint", -1, 1}};
   task.keep_outs = {{Machine::of_bob, KeepOut::Kind::sphere, {1.5, 0.5, -0.5}, 0.2}};
   task.cones = {{Machine::of_box, {1, 0, 0}, {0, 0, 1}, 1, DirectionCone::Side::outside}};
-  task.speed_limits = {{.linear = 2, .most = 1.5}, {.attitude = Machine::of_box, .most = 2}};
+  task.speed_limits = {{.linear = 2, .most = 1.5},
+                       {.attitude = Machine::of_box, .most = 2},
+                       {.site = Machine::of_top, .axes = {0, 2}, .most = 2}};
   task.end.places = {{Machine::of_bob, 0, 0.9}};
   task.end.turnings = {{Machine::of_box, 0, 0.1}};
   task.end.velocities = {{2, 0, 0.2}, {2, 1, 0}};
@@ -72,7 +76,9 @@ template <class Written> SceneControl planar() {
   SceneControl task = control_of_scene(Written{});
   task.actuators = {{"shoulder"}, {"elbow"}};
   task.keep_outs = {{Arm::of_fore, KeepOut::Kind::disk, {0.9, 0.9, 0}, 0.3}};
-  task.speed_limits = {{.linear = 1, .axes = {0, 1}, .most = 2}, {.linear = 0, .axes = {2}, .most = 1}};
+  task.speed_limits = {{.linear = 1, .axes = {0, 1}, .most = 2},
+                       {.linear = 0, .axes = {2}, .most = 1},
+                       {.site = Arm::of_fore, .most = 3}};
   task.end.places = {{Arm::of_fore, 0, 0.3}, {Arm::of_fore, 1, 0.7}};
   task.stages = 4;
   return task;

@@ -58,6 +58,48 @@ TEST(ControlledBodies, AnArmKeepsToASpeed) {
   expect_laws(scene, found);
 }
 
+/// That velocities of a point of a scene are those by which it moves, to the order of the steps.
+void expect_velocities(ControlledScene& scene, const ScenePath& path, multibody::Site point) {
+  const auto place = [&](std::size_t k) { return Vec(scene.forces(path.nodes[k])(point)); };
+  double fastest = 0, off = 0;
+  for (std::size_t k = 1; k + 1 < path.nodes.size(); ++k) {
+    const Vec moved = (place(k + 1) - place(k - 1)) / (2 * path.step);
+    const std::vector<double> velocities = scene.velocities(path.nodes[k]);
+    off = std::max(off, (Vec(velocities.data() + scene.n()) - moved).norm());
+    fastest = std::max(fastest, moved.norm());
+  }
+  EXPECT_LE(off, 0.02 * fastest);
+}
+
+TEST(ControlledBodies, AHandKeepsToASpeed) {
+  SceneControl task = reach(0);
+  task.stages = 60;
+  constexpr double most = 2.2;
+  task.speed_limits = {{.site = Arm::of_hand, .most = most}};
+  ControlledScene scene(task);
+  const SceneSolution found = solve_scene(scene, scene_guess(scene, 0));
+  ASSERT_TRUE(found.report.converged()) << found.report.message;
+  EXPECT_GT(found.crossover.active, 0);
+  expect_velocities(scene, found.path, Arm::of_hand);
+  double fastest = 0;
+  for (const ControlledNode& node : found.path.nodes)
+    fastest = std::max(fastest, Vec(scene.velocities(node).data() + scene.n()).norm());
+  EXPECT_NEAR(fastest, most, 1e-9);
+  expect_laws(scene, found);
+}
+
+// Velocities of a point of a body that turns in space, behind a joint.
+TEST(ControlledBodies, PointsMoveByTheirVelocities) {
+  SceneControl task = control_of_scene(Machine{});
+  task.actuators = {{"rail"}};
+  task.stages = 100;
+  task.speed_limits = {{.site = Machine::of_top, .most = 10}};
+  ControlledScene scene(task);
+  const auto drift = scene.drift(task.stages);
+  ASSERT_TRUE(drift);
+  expect_velocities(scene, {*drift, {}, task.duration / double(task.stages)}, Machine::of_top);
+}
+
 /// The satellite of examples/control/keep_out.toml, as a scene.
 SceneControl turn_of_satellite(const Vec& turn) {
   SceneControl task = control_of_scene(Satellite{});

@@ -73,7 +73,7 @@ struct Machine {
     scene.end_switch();
     return scene;
   }
-  static constexpr Site of_bob{2};
+  static constexpr Site of_bob{2}, of_top{4};  ///< the second of the box
   static constexpr Attitude of_box{1};
 };
 
@@ -145,6 +145,7 @@ struct Arm {
   }
   static constexpr Site of_upper{0}, of_fore{2};
   static constexpr std::array<int, 4> of_points{8, 9, 10, 11};  ///< elbow to hand
+  static constexpr Site of_hand{11};
 };
 
 /// The arm with drag on its upper link and a damper from the ground to its hand.

@@ -59,6 +59,30 @@ template <class S> void NodeForces<S>::evaluate() {
     if (row_of_[row] >= 0) joints_[std::size_t(row_of_[row])] = values_[row];
 }
 
+template <class S> Vector<S, 3> NodeForces<S>::velocity_at(int point, const std::vector<S>& velocities) const {
+  const auto of_factor = [&](int factor) {
+    const S* v = velocities.data() + 3 * factor;
+    return Vec3(v[0], v[1], v[2]);
+  };
+  if (point < linear()) {
+    Vec3 v = of_factor(point);
+    if (model_.factors.planar[std::size_t(point)]) v(2) = S(0);
+    return v;
+  }
+  for (const auto& arm : model_.points.arms)
+    if (arm.site == point) {
+      const Vec3 turning = of_factor(linear() + arm.rotation);
+      return velocity_at(arm.base, velocities) + attitude(arm.rotation) * Vec3(turning.cross(arm.arm));
+    }
+  for (const auto& arm : model_.points.planar_arms)
+    if (arm.site == point) {
+      const Vec3 d = at_.x[std::size_t(point)] - at_.x[std::size_t(arm.base)];
+      const S turning = of_factor(arm.base)(2);
+      return velocity_at(arm.base, velocities) + Vec3(-turning * d(1), turning * d(0), S(0));
+    }
+  return Vec3::Constant(S(0));  // of the ground
+}
+
 template class NodeForces<double>;
 template class NodeForces<SecondNumber>;
 

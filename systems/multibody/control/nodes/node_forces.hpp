@@ -40,11 +40,16 @@ template <class S> class NodeForces {
   /// Of sites, attitudes and linear factors as they are numbered in the scene that was written.
   const Vec3& operator()(Site site) const { return at_(model_.places(site)); }
   const Mat3& operator()(Attitude attitude) const { return at_(model_.places(attitude)); }
+  /// How fast a point moves where factors have these velocities, W (mu - D^T nu).
+  Vec3 velocity(Site site, const std::vector<S>& velocities) const {
+    return velocity_at(model_.places(site).index, velocities);
+  }
   int place_of(int linear) const { return model_.linear_places[std::size_t(linear)]; }
   int place_of(Attitude attitude) const { return model_.places(attitude).index; }
 
  private:
   void act(const std::vector<char>& on, S* out);
+  Vec3 velocity_at(int point, const std::vector<S>& velocities) const;
 
   BasicModel<S> model_;
   BasicConfiguration<S> at_;

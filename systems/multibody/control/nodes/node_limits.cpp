@@ -13,9 +13,15 @@ namespace lagroid::multibody {
 NodeLimits::NodeLimits(const SceneControl& task, const NodeForces<double>& order)
     : keep_outs_(task.keep_outs), cones_(task.cones) {
   for (const SpeedLimit& each : task.speed_limits) {
-    const int factor = each.linear >= 0 ? order.place_of(each.linear) : order.linear() + order.place_of(each.attitude);
+    int first = order.size() + 3 * int(points_.size());
+    if (each.linear >= 0)
+      first = 3 * order.place_of(each.linear);
+    else if (each.attitude.index >= 0)
+      first = 3 * (order.linear() + order.place_of(each.attitude));
+    else
+      points_.push_back(each.site);
     std::vector<int> components;
-    for (const int axis : each.axes) components.push_back(3 * factor + axis);
+    for (const int axis : each.axes) components.push_back(first + axis);
     speeds_.emplace_back(std::move(components), each.most);
   }
   const auto add_names = [&](const auto& limits, const char* kind) {
@@ -47,8 +53,8 @@ void NodeLimits::require(const SceneControl& task) {
         throw std::invalid_argument("the end that is given is where a cone is not kept to: change one of them");
   }
   for (const SpeedLimit& each : task.speed_limits) {
-    if (each.linear < 0 && each.attitude.index < 0)
-      throw std::invalid_argument("a speed limit: name a centre or an attitude of a body");
+    if (each.linear < 0 && each.attitude.index < 0 && each.site.index < 0)
+      throw std::invalid_argument("a speed limit: name a centre or an attitude of a body, or a point");
     if (!(each.most > 0))
       throw std::invalid_argument(fmt::format("a speed limit: its largest speed {} is not positive", each.most));
     if (each.axes.empty() || std::any_of(each.axes.begin(), each.axes.end(), [](int i) { return i < 0 || i > 2; }))

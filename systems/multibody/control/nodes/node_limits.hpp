@@ -24,6 +24,8 @@ class NodeLimits {
   int size() const { return on_places() + on_velocities(); }
   int on_places() const { return int(keep_outs_.size() + cones_.size()); }
   int on_velocities() const { return int(speeds_.size()); }
+  /// How many points have a limit of their speed.
+  int points() const { return int(points_.size()); }
 
   /// gamma_i, i < on_places(), at a node that was evaluated.
   template <class S> S value(int i, const NodeForces<S>& node) const {
@@ -32,7 +34,14 @@ class NodeLimits {
     const DirectionCone& cone = cones_[k - keep_outs_.size()];
     return cone.value(node(cone.attitude));
   }
-  /// gamma_{on_places() + k} of velocities there, W (mu - D^T nu).
+  /// Velocities of a node, W (mu - D^T nu), and behind them those of the points that limits are on.
+  template <class S> void add_points(const NodeForces<S>& node, std::vector<S>& velocities) const {
+    for (const Site site : points_) {
+      const Vector<S, 3> v = node.velocity(site, velocities);
+      velocities.insert(velocities.end(), v.data(), v.data() + 3);
+    }
+  }
+  /// gamma_{on_places() + k} of these velocities.
   template <class S> S value_of_speed(int k, const std::vector<S>& velocities) const {
     S square = S(0);
     for (const int i : components(k)) square += velocities[std::size_t(i)] * velocities[std::size_t(i)];
@@ -49,6 +58,7 @@ class NodeLimits {
   std::vector<KeepOut> keep_outs_;
   std::vector<DirectionCone> cones_;
   std::vector<std::pair<std::vector<int>, double>> speeds_;  // components, and the largest speed
+  std::vector<Site> points_;
   std::vector<std::string> names_;
 };
 
