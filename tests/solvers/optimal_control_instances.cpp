@@ -17,6 +17,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
 namespace lagroid::solvers_optimal_control_instances_tests {
 namespace {
@@ -93,21 +94,29 @@ template <class Sys> class Instances {
 template <class Sys> void expect_solved(Instances<Sys> instances) {
   constexpr int count = 200;
   std::map<std::string, int> failed;
-  int solved = 0;
+  std::vector<int> iterations;
+  int at_once = 0;
   for (int i = 0; i < count; ++i) {
     const ControlTask<Sys> task = instances.next();
-    ControlStatus status = ControlStatus::not_converged;
-    for (int start = 0; start < starts && status != ControlStatus::converged; ++start)
-      status = solve_control(task, control_guess(task, stages, start), {.max_iterations = 150}).report.status;
-    EXPECT_NE(status, ControlStatus::not_finite);
-    if (status == ControlStatus::converged)
-      ++solved;
+    ControlReport report;
+    for (int start = 0; start < starts && !report.converged(); ++start) {
+      report = solve_control(task, control_guess(task, stages, start), {.max_iterations = 150}).report;
+      if (start == 0) at_once += report.converged() ? 1 : 0;
+    }
+    EXPECT_NE(report.status, ControlStatus::not_finite);
+    if (report.converged())
+      iterations.push_back(report.iterations);
     else
-      ++failed[std::string(to_string(status))];
+      ++failed[std::string(to_string(report.status))];
   }
-  EXPECT_GE(solved, 0.95 * count);
-  testing::Test::RecordProperty("solved", solved);
-  for (const auto& [status, times] : failed) testing::Test::RecordProperty(status, times);
+  EXPECT_GE(double(iterations.size()), 0.95 * count);
+  // What docs/optimal_control_measured.md says.
+  std::sort(iterations.begin(), iterations.end());
+  testing::Test::RecordProperty("instances", count);
+  testing::Test::RecordProperty("solved", int(iterations.size()));
+  testing::Test::RecordProperty("at_once", at_once);
+  testing::Test::RecordProperty("iterations", iterations.empty() ? 0 : iterations[iterations.size() / 2]);
+  for (const auto& [status, times] : failed) testing::Test::RecordProperty("ended " + status, times);
 }
 
 TEST(RandomInstances, OfTheDoubleIntegrator) { expect_solved(Instances(DoubleIntegrator(), 2, 1, 0.5)); }

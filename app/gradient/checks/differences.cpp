@@ -261,8 +261,8 @@ void compare_with_differences(const GradientSubject& subject, const GradientColu
     Compared compared = compare_column(exact, rows, nudged, sizes[j], rate);
     // A derivative that is rounding says nothing of sizes.
     if (of_numbers[j] == 0 && !(compared.at_all && compared.agrees.all()))
-      if (Compared usual = compare_column(exact, rows, nudged, usual_size, rate); usual.at_all)
-        compared = std::move(usual);
+      if (Compared again = compare_column(exact, rows, nudged, usual_size, rate); again.at_all)
+        compared = std::move(again);
     if (!compared.at_all)
       throw GradientRefused(fmt::format("--check: {} beside this one, with another {}, {}; leave it out", is.what,
                                         table.columns[j], why));

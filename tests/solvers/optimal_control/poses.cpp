@@ -118,7 +118,9 @@ TEST(ReedsSheppCars, FindTheShortestWaysAndTheirWords) {
     ASSERT_FALSE(found.minima.empty()) << i;
     const auto& way = found.minima.front().trajectory;
     EXPECT_NEAR(way.duration(), each.length, 1e-4) << i;
+    RecordProperty("length " + std::to_string(i + 1), fmt::format("{:.17g} {:.17g}", each.length, way.duration()));
     const std::string word = word_of(way, each.largest_turn);
+    RecordProperty("word " + std::to_string(i + 1), word);
     EXPECT_TRUE(each.words.empty() || std::count(each.words.begin(), each.words.end(), word) == 1) << i << word;
     if (!each.words.empty()) continue;
     for (const Vector<double, 2>& u : way.controls) EXPECT_NEAR(std::abs(u(1)), each.largest_turn, 1e-6);
