@@ -78,6 +78,26 @@ ControlBounds read_bounds(const Section& bounds, std::span<const std::string> co
   return out;
 }
 
+const KeyOf<Number> time_weight_key{"time", {nonnegative}, "", "w of w T", 0.0};
+KeyOf<Number> weight_key(const std::string& control) {
+  return {control, {nonnegative}, "", "w of the integral of w u^2", 0.0};
+}
+
+/// A table [weights] of a scene, or of a phase of it.
+std::optional<WeightsScene> read_weights(const Section& at, std::span<const std::string> controls) {
+  if (!at.has("weights")) return std::nullopt;
+  const Section table = at.section("weights", "");
+  WeightsScene out;
+  double sum = out.of_time = read_key(table, time_weight_key);
+  for (const std::string& control : controls) sum += out.of_controls.emplace_back(read_key(table, weight_key(control)));
+  table.finish();
+  if (!(sum > 0))
+    table.fail("", fmt::format("nothing costs: give one of {} or time a weight", fmt::join(controls, ", ")));
+  if (at.section_or_empty("parameters").has("cost"))
+    at.fail("weights", "says what the motion costs: leave out parameters.cost, or weights");
+  return out;
+}
+
 /// Which of the names a list of them has.
 std::vector<bool> read_names(const Section& at, const KeyOf<Texts>& key, std::span<const std::string> names) {
   std::vector<bool> out(names.size());
@@ -129,6 +149,7 @@ std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::s
     phase.stages = read_key(table, phase_keys::stages);
     phase.constraints_hold = read_key(table, phase_keys::constraints);
     phase.bounds = read_bounds(table.section_or_empty("bounds"), controls, bounds);
+    phase.weights = read_weights(table, controls);
     const Section through = table.section_or_empty("through");
     for (const std::string& state : states)
       phase.through.push_back(through.has(state) ? std::optional(read_key_or(through, phase_keys::through(state), 0))
@@ -148,7 +169,7 @@ std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::s
 void require_loop_scene(const Section& scene, const ControlScene& read) {
   if (!read.phases.empty()) scene.fail("phase", "a loop looks ahead in one phase; give [horizon]");
   for (const std::vector<bool>* free : {&read.free_start, &read.free_end})
-    if (std::find(free->begin(), free->end(), true) != free->end())
+    if (is_any(*free))
       scene.fail("boundary",
                  "a loop is between states that are given; leave out boundary.free_start and boundary.free_end");
   if (read.duration_is_free)
@@ -179,7 +200,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   require_free("start", out.start_on.get(), out.free_start);
   require_free("end", out.end_on.get(), out.free_end);
   if (ends.has(end_cost_key.name)) {
-    if (std::none_of(out.free_end.begin(), out.free_end.end(), [](bool free) { return free; }))
+    if (!is_any(out.free_end))
       ends.fail(end_cost_key.name,
                 "where the end is given this is the same for all motions; name in free_end what may differ from it");
     out.end_cost = formulas_of(ends, end_cost_key.name, {read_key_or(ends, end_cost_key, "")}, states);
@@ -193,6 +214,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   }
   constexpr double none = std::numeric_limits<double>::infinity();
   out.bounds = read_bounds(scene.section_or_empty("bounds"), controls, ControlBounds(controls.size(), {-none, none}));
+  out.weights = read_weights(scene, controls);
   out.phases = read_phases(scene, states, controls, out.bounds);
   if (out.phases.empty()) {
     const Section horizon = scene.section("horizon", "duration and stages");
@@ -222,12 +244,15 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
   const std::vector<std::string> states = problem.states();
   std::vector<Key> bounds;
   for (const std::string& control : problem.controls()) bounds.push_back(bound_key(control));
+  std::vector<Key> weights{time_weight_key};
+  for (const std::string& control : problem.controls()) weights.push_back(weight_key(control));
   std::vector<Key> through;
   for (const std::string& state : states) through.push_back(phase_keys::through(state));
   const Table phase{{phase_keys::name, phase_keys::duration, phase_keys::free, phase_keys::range, phase_keys::stages,
                      phase_keys::constraints,
                      optional_table("through", {through}, "numbers of the state where it ends"), on_key("on"),
                      optional_table("bounds", {bounds}, "of the controls, in place of the scene's"),
+                     optional_table("weights", {weights}, "of the cost, in place of the scene's"),
                      optional_table("parameters", {problem.parameters()}, "of the system, in place of the scene's")}};
   return {KeyOf<Table>{"boundary",
                        {{end_key("start", states), end_key("end", states), free_end_key("start"), free_end_key("end"),
@@ -242,6 +267,7 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
                        "that of the phases"},
           KeyOf<Tables>{"phase", {phase}, "", "one after another, in place of the horizon", {}, "one"},
           optional_table("bounds", {bounds}, "of the controls"),
+          optional_table("weights", {weights}, "of the cost, in place of the problem's own"),
           optional_table("solver", {search_keys()}, "of the search"),
           optional_table("loop", {{samples_key, disturbance_key, loop_iterations_key, loop_tolerance_key, usable_key}},
                          "the problem solved anew at every sample, of the length of a stage")};

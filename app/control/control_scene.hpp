@@ -7,6 +7,7 @@
 #include "search_keys.hpp"
 #include "state_condition.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -19,6 +20,12 @@ namespace lagroid::app {
 
 using ControlBounds = std::vector<std::pair<double, double>>;  ///< of each control; twice the same: it is fixed
 
+/// A table [weights].
+struct WeightsScene {
+  std::vector<double> of_controls;
+  double of_time = 0;
+};
+
 /// A table [[phase]].
 struct PhaseScene {
   Section table;  ///< whose [phase.parameters] take the place of the scene's
@@ -29,10 +36,14 @@ struct PhaseScene {
   double longest = HUGE_VAL;
   long stages = 50;
   ControlBounds bounds;
+  std::optional<WeightsScene> weights;           ///< none: those of the scene
   bool constraints_hold = true;                  ///< those of the problem
   std::vector<std::optional<double>> through;    ///< of each number of the state where it ends; none: free
   std::shared_ptr<const StateFormulas> on = {};  ///< what vanishes there
 };
+
+/// Whether one of what is free is.
+inline bool is_any(const std::vector<bool>& free) { return std::find(free.begin(), free.end(), true) != free.end(); }
 
 struct ControlScene {
   std::vector<double> start;
@@ -47,6 +58,7 @@ struct ControlScene {
   bool duration_is_free = false;
   long stages = 100;
   ControlBounds bounds;
+  std::optional<WeightsScene> weights;  ///< of the cost; none: it is the problem's own
   ControlMethod method = ControlMethod::interior_point;
   ControlSearchOptions search;
   std::optional<LoopScene> loop;
@@ -59,7 +71,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
 /// Refuses what a control loop cannot look ahead for. Throws SceneError.
 void require_loop_scene(const Section& scene, const ControlScene& read);
 
-/// The keys of [boundary], [horizon], [[phase]], [bounds], [solver] and [loop] of a problem.
+/// The keys of [boundary], [horizon], [[phase]], [bounds], [weights], [solver] and [loop] of a problem.
 std::vector<Key> control_scene_keys(const ControlProblem& problem);
 
 }  // namespace lagroid::app

@@ -6,10 +6,9 @@
 #include "../reading/kinds.hpp"
 #include "../scenes/arrow_format.hpp"
 #include "control_scene.hpp"
+#include "problems/loop_of.hpp"
 #include "problems/states_of_problem.hpp"
-#include "scene_loop.hpp"
 
-#include <lagroid/solvers/control/control_loop.hpp>
 #include <lagroid/solvers/control/ipopt/ipopt_control.hpp>
 #include <lagroid/solvers/control/testing/control_solution_laws.hpp>
 #include <lagroid/solvers/processor_time.hpp>
@@ -22,7 +21,6 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -71,7 +69,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     if (posed.scene.loop) {
       const State start = start_of(posed.scene);
       const ControlSearch<Sys> found = search(posed, keep_going);
-      Loop loop(posed, found);
+      LoopOf<Sys> loop(posed.task, posed.scene, best_of(found));
       out = close_loop(*this, loop, *posed.scene.loop, {start.begin(), start.end()}, keep_going);
       out.groupoid = G::name();
       out.outcomes = found.outcomes;
@@ -111,7 +109,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     const Posed posed = read(scene);
     require_loop(scene);
     require_loop_scene(scene, posed.scene);
-    return std::make_unique<Loop>(posed, search(posed, keep_going));
+    return std::make_unique<LoopOf<Sys>>(posed.task, posed.scene, best_of(search(posed, keep_going)));
   }
 
  private:
@@ -126,7 +124,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     parametrised_of(task.system) = read_parameters<Parametrised>(scene);
     posed.scene = read_control_scene(scene, states(), controls());
     const ControlScene& read = posed.scene;
-    task.boundary = arrow(task.system, start_of(read), end_of(read));
+    task.boundary = arrow_between(task.system, start_of(read), end_of(read));
     if constexpr (requires { Sys::conserved; }) {
       task.free_end = Sys::conserved;
       for (std::size_t i = 0; i < read.start.size(); ++i)
@@ -137,6 +135,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     task.duration = read.duration;
     task.duration_is_free = read.duration_is_free;
     set_bounds(task, read.bounds);
+    set_weights(task.system, read.weights);
     pose_ends(scene, posed);
     for (const PhaseScene& phase : read.phases) task.phases.push_back(posed_phase(posed, phase));
     scene.finish();
@@ -179,13 +178,12 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
                            "what parameters.{} asks for does not hold there; give a state where it does, or change it",
                            limits_[*broken]));
     if (!phase.duration_is_free || std::isfinite(phase.longest) || !can_wait(phase, node)) return;
-    const std::vector<Key> keys = parameters();
-    const bool can_cost = std::any_of(keys.begin(), keys.end(), [](const Key& each) { return each.name == "cost"; });
     const bool in_phases = !posed.scene.phases.empty();
     const Section table = table_of_duration(scene, posed, at_start ? 0 : phases.size() - 1);
-    table.fail("free", fmt::format("the motion can wait at its {} at no cost, so that no duration is the best: {}{}",
-                                   key, can_cost ? "let time be the cost (parameters.cost = \"time\"), or " : "",
-                                   in_phases ? "give the duration a range" : "leave out free"));
+    table.fail("free",
+               fmt::format("the motion can wait at its {} at no cost, so that no duration is the best: let time cost "
+                           "something (weights.time), or {}",
+                           key, in_phases ? "give the duration a range" : "leave out free"));
   }
   static bool comes_back(const Posed& posed) {
     return posed.task.system.groupoid.tau_inverse(posed.task.boundary).isZero(1e-12);
@@ -224,16 +222,22 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     }
   }
   /// What a solve that failed says of a free duration that was guessed much too long.
-  static std::string guess_that_went_to_nothing(const Posed& posed, const ControlTrajectory<Sys>& found) {
+  static std::string guess_far_from(const Posed& posed, const ControlTrajectory<Sys>& found) {
     const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
     for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i)
       if (went_to_nothing(phases[i], found.phases[i]))
-        return fmt::format("; a free duration went to nothing from the guess of {}: guess it nearer to what it may be",
-                           phases[i].duration);
+        return fmt::format("; a free duration came to {:.3g} from the guess of {}: guess it nearer to what it may be",
+                           found.phases[i].step * double(phases[i].stages), phases[i].duration);
     return "";
   }
   template <class Bounded> static void set_bounds(Bounded& of, const ControlBounds& bounds) {
     for (int i = 0; i < int(bounds.size()); ++i) std::tie(of.lower(i), of.upper(i)) = bounds[std::size_t(i)];
+  }
+  static void set_weights(Sys& system, const std::optional<WeightsScene>& weights) {
+    if (!weights) return;
+    auto& of = system.weights.emplace();
+    of.of_controls = Eigen::Map<const decltype(of.of_controls)>(weights->of_controls.data());
+    of.of_time = weights->of_time;
   }
   /// An attitude is free as a whole or not at all: one number of a rotation vector means nothing by itself.
   template <class Fail> static void require_whole_attitudes(const std::vector<bool>& free, const Fail& fail) {
@@ -265,7 +269,6 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       task.end_cost =
           std::make_shared<const Condition>(start, end_of(read), typename Condition::Given{}, read.end_cost);
   }
-  static bool is_any(const std::vector<bool>& of) { return std::find(of.begin(), of.end(), true) != of.end(); }
   static bool is_conserved(std::size_t i) {
     if constexpr (requires { Sys::conserved; }) {
       return Sys::conserved[i];
@@ -283,6 +286,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     phase.longest = read.longest;
     parametrised_of(phase.system) = with_parameters(read.table, parametrised_of(phase.system));
     set_bounds(phase, read.bounds);
+    set_weights(phase.system, read.weights);
     phase.inequalities_hold = read.constraints_hold;
     // Where it might end: what is free there, in the share of the time that has passed.
     double before = 0;
@@ -303,7 +307,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       at(int(i)) = *read.through[i];
     }
     require_whole_attitudes(free, [&](const char* why) { read.table.fail("through", why); });
-    if (any) phase.guess = arrow(posed.task.system, start, at);
+    if (any) phase.guess = arrow_between(posed.task.system, start, at);
     if (any || read.on) phase.end_condition = std::make_shared<const Condition>(start, at, given, read.on);
     return phase;
   }
@@ -333,61 +337,6 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     return found.minima.empty() ? found.best_failure : found.minima.front();
   }
 
-  class Loop final : public SceneLoop {
-   public:
-    Loop(const Posed& posed, const ControlSearch<Sys>& found)
-        : system_(posed.task.system),
-          end_(end_of(posed.scene)),
-          state_(start_of(posed.scene)),
-          usable_(posed.scene.loop.value_or(LoopScene()).usable),
-          loop_(posed.task, best_of(found), options(posed.scene)),
-          report_(best_of(found).report) {
-      if (report_.converged()) report_ = loop_.begin();
-    }
-    const ControlReport& report() const override { return report_; }
-    void advance(std::span<const double> state) override {
-      state_ = Eigen::Map<const State>(state.data());
-      report_ = loop_.follow(arrow(system_, state_, end_), usable_);
-    }
-    std::vector<double> control() const override {
-      const Vector<double, Sys::controls> u = loop_.control();
-      return {u.begin(), u.end()};
-    }
-    double cost() const override { return system_.cost(plan().arrows.front(), loop_.control(), plan().step()); }
-    std::vector<double> predicted() const override {
-      const State next = States::reached(state_, plan().arrows.front());
-      return {next.begin(), next.end()};
-    }
-    double step() const override { return plan().step(); }
-    long stages() const override { return long(plan().arrows.size()); }
-    long restarts() const override { return loop_.restarts(); }
-    const Latency& latency() const override { return loop_.latency(); }
-
-   private:
-    static ControlLoopOptions options(const ControlScene& scene) {
-      const LoopScene loop = scene.loop.value_or(LoopScene());
-      ControlLoopOptions out{.iterations = loop.iterations, .solver = scene.search.solver};
-      out.solver.tolerance = loop.tolerance;
-      return out;
-    }
-    const ControlTrajectory<Sys>& plan() const { return loop_.plan(); }
-
-    Sys system_;
-    State end_;
-    State state_;
-    double usable_;
-    ControlLoop<Sys> loop_;
-    ControlReport report_;
-  };
-
-  static ArrowOf<G> arrow(const Sys& system, const State& start, const State& end) {
-    if constexpr (requires { system.avoided; }) {
-      return States::arrow(start, end, system.avoided);
-    } else {
-      return States::arrow(start, end);
-    }
-  }
-
   ControlResult described(const Posed& posed, const ControlSearch<Sys>& found) const {
     const G& groupoid = posed.task.system.groupoid;
     const State start = start_of(posed.scene);
@@ -400,7 +349,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.by_ipopt = posed.scene.method == ControlMethod::ipopt;
     out.report = best.report;
     if (!best.report.converged()) {
-      out.report.message += guess_that_went_to_nothing(posed, best.trajectory);
+      out.report.message += guess_far_from(posed, best.trajectory);
       if (posed.task.end_cost) out.report.message += "; or does boundary.end_cost fall without end?";
     }
     out.crossover = best.crossover;

@@ -19,7 +19,8 @@
 /// should be free at both ends (`free_start`, `free_end`); where these are prescribed, the order in h is one, elsewhere
 /// two. Other arrow constraints do not compile. Object constraints C(q_k) = 0 hold at every node, their multipliers are
 /// controls behind these, and momenta are those before their reaction, too: at an end the component along dC is to be
-/// free. `running_cost` is taken at the states (q, mu) of both ends. Derivatives are third ones of L, exact.
+/// free. `running_cost`, or `weights` in its place, is taken at the states (q, mu) of both ends. Derivatives are third
+/// ones of L, exact.
 ///
 /// Ober-Bloebaum, Junge, Marsden, ESAIM COCV 17 (2011), section 3; [G] Def. 3.3.
 
@@ -39,7 +40,8 @@ template <class Sys> using ActuatedGroupoid = Product<typename Sys::GroupoidType
 template <class Derived, class Sys, int ControlCount, int Inequalities = 0>
 struct ActuatedSystem
     : ControlSystem<Derived, ActuatedGroupoid<Sys>, ControlCount + Sys::arrow_constraints + Sys::object_constraints,
-                    2 * Sys::dimension + Sys::arrow_constraints, Inequalities> {
+                    2 * Sys::dimension + Sys::arrow_constraints, Inequalities>,
+      WeighedCost<ControlCount> {
   static_assert(StepDependent<Sys> && !TimeDependent<Sys>, "the system writes lagrangian(g, step) (see StepDependent)");
   static_assert(Sys::arrow_constraints == 0 || Nonholonomic<Sys>, "arrow constraints are nonholonomic ones");
   using Motion = typename Sys::GroupoidType;
@@ -57,8 +59,8 @@ struct ActuatedSystem
   template <class A, class S> S cost(const A& g, const AllControls<S>& all, const S& h) const {
     const auto& [arrow, momentum] = g;
     const Vector<S, ControlCount> u = part<0, ControlCount>(all);
-    const S ends = self().running_cost(State<S>{system.groupoid.source(arrow), momentum.source}, u) +
-                   self().running_cost(State<S>{system.groupoid.target(arrow), momentum.target}, u);
+    const S ends = this->rate_of_cost(self(), State<S>{system.groupoid.source(arrow), momentum.source}, u) +
+                   this->rate_of_cost(self(), State<S>{system.groupoid.target(arrow), momentum.target}, u);
     return ends * h * 0.5;
   }
 

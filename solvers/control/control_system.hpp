@@ -85,6 +85,28 @@ template <class Derived, class G, int ControlCount, int Equalities, int Inequali
   [[no_unique_address]] G groupoid;
 };
 
+/// What a motion costs in place of its system's own cost: the integral of sum_j w_j u_j^2 + w.
+template <int ControlCount> struct ControlWeights {
+  Vector<double, ControlCount> of_controls = Vector<double, ControlCount>::Ones();  ///< w_j, not negative
+  double of_time = 0;                                                               ///< w, not negative
+};
+
+/// A system whose running cost may be given by weights:
+///
+///     task.system.weights = {{1, 4}, 0.5};  // u_1^2 + 4 u_2^2 + 1/2
+template <int ControlCount> struct WeighedCost {
+  std::optional<ControlWeights<ControlCount>> weights = {};
+
+ protected:
+  template <class Sys, class Q, class S>
+  S rate_of_cost(const Sys& system, const Q& q, const Vector<S, ControlCount>& u) const {
+    if (!weights) return system.running_cost(q, u);
+    S sum = S(weights->of_time);
+    for (int i = 0; i < ControlCount; ++i) sum += u(i) * u(i) * weights->of_controls(i);
+    return sum;
+  }
+};
+
 /// So many stages, each of the same duration h.
 struct PhaseSteps {
   long stages = 0;

@@ -110,7 +110,7 @@ template <class Flow> class FlowDerivatives {
     for (int i = 0; i < controls; ++i) u(i) = J::variable(at(i), objects + i);
     const auto objects_half_way = std::tuple{object<I>(flow, std::get<I>(factors))...};
     const auto& q = Factors::object(objects_half_way);
-    const J cost = flow.running_cost(q, u) * h;
+    const J cost = flow.cost_rate(q, u) * h;
     const Vector<J, n> velocity = flow.flow(q, u);
     J sum = cost;  // h F
     for (int i = 0; i < n; ++i) sum += velocity(i) * (-h * lambda[i]);

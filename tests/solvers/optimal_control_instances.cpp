@@ -1,9 +1,11 @@
 // Instances that are feasible by construction: from a state drawn at random, where random admissible controls lead.
 #include <lagroid/solvers/control/control_search.hpp>
 #include <lagroid/systems/control/flows/double_integrator.hpp>
+#include <lagroid/systems/control/flows/dubins_car.hpp>
 #include <lagroid/systems/control/flows/hovercraft.hpp>
 #include <lagroid/systems/control/flows/low_thrust.hpp>
 #include <lagroid/systems/control/flows/planar_mass.hpp>
+#include <lagroid/systems/control/flows/reeds_shepp_car.hpp>
 #include <lagroid/systems/control/flows/satellite_turn.hpp>
 #include <lagroid/systems/control/flows/steered_car.hpp>
 #include <lagroid/systems/control/flows/steered_sleigh.hpp>
@@ -37,6 +39,8 @@ template <class Sys> class Instances {
   /// The controls are bounded by an inequality of the system's own.
   void leave_out_bounds() { has_bounds_ = false; }
 
+  void let_time_be_free() { time_is_free_ = true; }
+
   /// The next whose own inequalities hold on the way.
   ControlTask<Sys> next() {
     for (;;)
@@ -66,7 +70,7 @@ template <class Sys> class Instances {
         if (system_.inequality(g, u, h).maxCoeff() > -0.01) return std::nullopt;
       reached = groupoid.compose(reached, g);
     }
-    ControlTask<Sys> task{system_, reached, duration_};
+    ControlTask<Sys> task{system_, reached, duration_, time_is_free_};
     if (has_bounds_) {
       task.lower.setConstant(-bound_);
       task.upper.setConstant(bound_);
@@ -87,6 +91,7 @@ template <class Sys> class Instances {
   std::normal_distribution<double> normal_;
   State around_ = State::Zero();
   bool has_bounds_ = true;
+  bool time_is_free_ = false;
   std::mt19937 generator_{7};
 };
 
@@ -125,6 +130,16 @@ TEST(RandomInstances, OfThePlanarMass) { expect_solved(Instances(PlanarMass(), 3
 TEST(RandomInstances, OfTheHovercraft) { expect_solved(Instances(Hovercraft(), 3, 1, 0.3)); }
 TEST(RandomInstances, OfTheCar) { expect_solved(Instances(SteeredCar(), 3, 0.7, 0.3)); }
 TEST(RandomInstances, OfTheSleigh) { expect_solved(Instances(SteeredSleigh(), 3, 1, 0.3)); }
+TEST(RandomInstances, OfDubinsCar) {
+  Instances<DubinsCar> ways(DubinsCar(), 4, 1, 1);
+  ways.let_time_be_free();
+  expect_solved(ways);
+}
+TEST(RandomInstances, OfTheReedsSheppCar) {
+  Instances<ReedsSheppCar> ways(ReedsSheppCar(), 4, 1, 1);
+  ways.let_time_be_free();
+  expect_solved(ways);
+}
 TEST(RandomInstances, OfTransfers) {
   LowThrust craft;
   craft.largest_thrust = 0.05;

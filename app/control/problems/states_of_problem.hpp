@@ -8,6 +8,7 @@
 /// Nothing throws.
 
 #include <lagroid/solvers/control/control_system.hpp>
+#include <lagroid/systems/control/flows/flow_states.hpp>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,16 @@
 namespace lagroid::app {
 
 template <class Sys> using NodeOf = ObjectOf<typename Sys::GroupoidType>;
+
+/// From one state to another.
+template <class Sys, class State> auto arrow_between(const Sys& system, const State& start, const State& end) {
+  using States = FlowStates<typename Sys::GroupoidType>;
+  if constexpr (requires { system.avoided; }) {
+    return States::arrow(start, end, system.avoided);
+  } else {
+    return States::arrow(start, end);
+  }
+}
 
 /// The first inequality that does not hold at a node, whatever leads there. One that is the same number along arrows,
 /// controls and steps drawn at random is of the node alone; of the others nothing is said.

@@ -88,6 +88,7 @@ template <class Sys> std::vector<EquationName> equation_names() {
 
 /// What the system's cost is counted in.
 template <class Sys> std::string cost_unit_of(const Sys& system) {
+  if (system.weights) return "cost";
   if constexpr (requires { Sys::cost_unit; }) {
     return std::string(Sys::cost_unit);
   } else {

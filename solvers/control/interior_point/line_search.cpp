@@ -1,6 +1,7 @@
 // The line search by a filter: a step is taken where no earlier iterate was better in both, violation and barrier
 // function.
 #include <lagroid/solvers/control/interior_point.hpp>
+#include <lagroid/solvers/control/interior_point/step_limit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -152,7 +153,7 @@ bool InteriorPoint::take_corrected(const Merit& now, double slope, double fracti
 InteriorPoint::Outcome InteriorPoint::line_search() {
   const Merit now = merit(values_, slacks_);
   const double slope = this->slope();
-  const double most = fraction_to_boundary(slacks_, slack_step_);
+  const double most = std::min(fraction_to_boundary(slacks_, slack_step_), detail::fraction_of_durations(step_.primal));
 
   merit_rounding_ = merit_rounding(now);
   gains_rounding_ = now.violation == 0 && std::abs(slope) <= merit_rounding_;

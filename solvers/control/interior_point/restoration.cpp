@@ -1,4 +1,5 @@
 #include <lagroid/solvers/control/interior_point.hpp>
+#include <lagroid/solvers/control/interior_point/step_limit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +120,7 @@ bool InteriorPoint::restore() {
     kkt_.solve_eliminated(right_, step_);
 
     const double slope = dot(gradient_, step_.primal);
-    double fraction = 1;
+    double fraction = std::min(1.0, detail::fraction_of_durations(step_.primal));
     bool lower = false;
     for (; fraction > 1e-12 && !lower; fraction *= lower ? 1 : 0.5) {
       transcription_.try_displacement(step_.primal, fraction);

@@ -282,6 +282,24 @@ TEST_F(ControlResults, ACostOfTheEndIsAFormula) {
   }
 }
 
+// [weights] says what a motion costs: time and effort of one force, of which the scene has the closed form.
+TEST_F(ControlResults, WeightsTakeThePlaceOfTheCost) {
+  const fs::path file = folder_ / "weighed.toml";
+  std::ofstream(file) << "control = \"double_integrator\"\n[boundary]\nstart = [0, 0]\nend = [1, 0]\n"
+                         "[horizon]\nduration = 3\nfree = true\nstages = 50\n[weights]\nu = 1.0\ntime = 2.25\n";
+  const Outcome r = run("control " + file.string() + " --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const json found = json::parse(r.out);
+  EXPECT_NEAR(found.at("duration").get<double>(), 2, 2e-3);
+  EXPECT_NEAR(found.at("cost").get<double>(), 6, 4e-3);
+  EXPECT_EQ(found.at("costates")[0].at("unit"), "cost/m");
+  const std::string again = "control " + file.string() + " --set ";
+  expect_refused(again + "weights.u=0 --set weights.time=0", "weights: nothing costs: give one of u or time a weight");
+  expect_refused(again + "weights.u=-1", "weights.u");
+  expect_refused(again + "weights.force=1", "weights.force: unknown key");
+  expect_refused(again + "'parameters.cost=\"time\"'", "leave out parameters.cost, or weights");
+}
+
 TEST_F(ControlResults, BoundsMayBeOnOneSide) {
   const std::string still = " --json --set parameters.cost=effort --set horizon.free=false --set horizon.duration=1.6";
   const auto active = [&](const std::string& bounds) {

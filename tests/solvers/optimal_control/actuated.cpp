@@ -57,6 +57,10 @@ ControlTask<Pushed<Pendulum, 1>> swing_up() {
 TEST(ActuatedSystems, SwingUpAtTheKnownCost) {
   auto task = swing_up();
   expect_second_order("free", task, 1.1611196661425072, 28.6, true);
+  const double cost = solve_control(task, 50).report.cost;
+  task.system.weights = {{Vector<double, 1>(2.0), 0.1}};
+  EXPECT_NEAR(solve_control(task, 50).report.cost, 2 * cost + 0.1 * 10, 1e-11);
+  task.system.weights.reset();
   task.lower(0) = -0.5;
   task.upper(0) = 0.5;
   expect_second_order("bounded", task, 1.1639915199984323, 29.3, true);

@@ -146,6 +146,12 @@ TEST(FlowDerivatives, OfAMassBesideADisk) {
   EXPECT_LT(defect(mass), rounding);
 }
 
+TEST(FlowDerivatives, OfACostByWeights) {
+  PlanarMass mass;
+  mass.weights = {{2, 0.3}, 0.7};
+  EXPECT_LT(defect(mass), rounding);
+}
+
 TEST(FlowDerivatives, OfASatelliteBesideACone) {
   SatelliteTurn satellite;
   satellite.cone = 0.4;

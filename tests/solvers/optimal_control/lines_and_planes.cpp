@@ -82,6 +82,39 @@ TEST(PlanarMasses, FastestWithABoundedForce) {
   expect_second_order("planar", task, 2.648749577047721, 0.37, false, 2);
 }
 
+// Along each axis the cheapest motion is what it is without the other, so that its cost goes by its weight.
+TEST(PlanarMasses, WeightsAreOfEachForceAndOfTheTime) {
+  const auto cost = [](double x, double y, const ControlWeights<2>& weights) {
+    auto task = task_on<PlanarMass>({0, 0, 0, 0}, {x, y, 0, 0}, 2);
+    task.system.weights = weights;
+    return solve_control(task, 30).report.cost;
+  };
+  const double along_x = cost(1, 0, {}), along_y = cost(0, 2, {});
+  EXPECT_NEAR(along_y, 4 * along_x, 1e-12);
+  EXPECT_NEAR(cost(1, 2, {{3, 0.5}, 0}), 3 * along_x + 0.5 * along_y, 1e-12);
+  EXPECT_NEAR(cost(1, 2, {{3, 0.5}, 0.7}), 3 * along_x + 0.5 * along_y + 2 * 0.7, 1e-12);
+}
+
+// 12 d^2 / T^3 + w T is least where T^4 = 36 d^2 / w. It is found from any guess of T.
+TEST(DoubleIntegrators, TimeAndEffortAreWeighedAgainstEachOther) {
+  auto task = task_on<DoubleIntegrator>({0, 0}, {1, 0}, 2);
+  task.duration_is_free = true;
+  constexpr double weight = 2.25;
+  task.system.weights = {{Vector<double, 1>(1.0), weight}};
+  const double best = std::pow(36 / weight, 0.25);
+  for (const double guess : {0.1, 0.5, 2.0, 30.0})
+    for (const long stages : {50, 100}) {
+      task.duration = guess;
+      const auto found = solve_control(task, stages);
+      ASSERT_TRUE(found.report.converged()) << guess << ": " << found.report.message;
+      EXPECT_LE(found.report.iterations, 20) << guess;
+      const double square = double(stages) * double(stages);
+      EXPECT_NEAR(found.trajectory.duration(), best, 2 * best / square);
+      EXPECT_NEAR(found.report.cost, 12 / (best * best * best) + weight * best, 10 / square);
+    }
+  expect_laws(task, 20);
+}
+
 TEST(PlanarMasses, KeepOutOfADisk) {
   auto task = task_on<PlanarMass>({-2, -0.3, 0, 0}, {2, 0.2, 0, 0}, 4);
   task.system.disk_radius = 1;
