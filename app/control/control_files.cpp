@@ -235,6 +235,7 @@ std::string control_text(const ControlResult& found) {
   std::string out = fmt::format("{} on {}, {} stages: {}{}\n", found.problem, found.groupoid, found.control_rows.size(),
                                 to_string(r.status), found.by_ipopt ? ", by IPOPT" : "");
   out += fmt::format("  cost             {:.12g}{}\n", r.cost, in_words(r.curvature));
+  if (found.end_cost) out += fmt::format("    of the end     {:.12g}\n", *found.end_cost);
   out += fmt::format("  duration         {:.12g}\n", found.times.back());
   for (const PhaseResult& each : found.phases)
     out += fmt::format("    {:<15}{:.12g} in {} stages\n", each.name, each.duration, each.stages);
@@ -269,6 +270,7 @@ nlohmann::ordered_json control_json(const ControlResult& found) {
   out["groupoid"] = found.groupoid;
   out["stages"] = found.control_rows.size();
   out["cost"] = r.cost;
+  if (found.end_cost) out["end_cost"] = *found.end_cost;
   out["duration"] = found.times.back();
   if (!found.phases.empty()) {
     out["phases"] = nlohmann::ordered_json::array();

@@ -69,6 +69,7 @@ struct ControlResult {
   std::vector<Shape> shapes;                         ///< what it looks like in space, by columns of states and `seen`
   std::vector<Columns> seen;                         ///< of nodes: what pictures need beside the states
   ControlReport report;
+  std::optional<double> end_cost = {};  ///< what of the cost is that of the end, where a scene gives one
   CrossoverReport crossover;
   std::vector<double> costs;              ///< of all distinct solutions, cheapest first
   std::map<ControlStatus, int> outcomes;  ///< of the starts

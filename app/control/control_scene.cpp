@@ -105,7 +105,9 @@ std::vector<bool> read_names(const Section& at, const KeyOf<Texts>& key, std::sp
     const auto found = std::find(names.begin(), names.end(), each);
     if (found == names.end())
       at.fail(key.name, fmt::format("\"{}\" is no number of the state; they are {}", each, fmt::join(names, ", ")));
-    out[std::size_t(found - names.begin())] = true;
+    const auto i = std::size_t(found - names.begin());
+    if (out[i]) at.fail(key.name, fmt::format("\"{}\" stands there twice", each));
+    out[i] = true;
   }
   return out;
 }

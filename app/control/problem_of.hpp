@@ -379,6 +379,8 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       const auto& u = best.trajectory.controls[k];
       out.control_rows.emplace_back(u.begin(), u.end());
     }
+    if (const auto& of_end = posed.scene.end_cost)
+      of_end->values(out.state_rows.back().data(), &out.end_cost.emplace());
     out.costate_rows = best.costates;
     out.inequality_rows = best.inequality_multipliers;
     return out;

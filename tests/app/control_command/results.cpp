@@ -272,7 +272,9 @@ TEST_F(ControlResults, ACostOfTheEndIsAFormula) {
   ASSERT_EQ(r.code, 0) << r.err;
   const double s = 8.0 / 3 - 2 * 0.01 / 12;
   EXPECT_NEAR(json::parse(r.out).at("cost").get<double>(), 5 / (1 + 5 * s), 1e-12);
+  EXPECT_NEAR(json::parse(r.out).at("end_cost").get<double>(), 5 / ((1 + 5 * s) * (1 + 5 * s)), 1e-12);
   for (const auto& [set, words] : {std::pair{"boundary.free_end=[]", "end_cost"},
+                                   {"boundary.free_end=[\"x\", \"x\"]", "free_end: \"x\" stands there twice"},
                                    {"boundary.end_cost=\"sqrt(x - 1)\"", "no finite number at boundary.end"},
                                    {"boundary.end_cost=\"5*(z - 1)\"", "z"}}) {
     const Outcome refused = run("control " + file.string() + " --set '" + set + "'");
