@@ -49,7 +49,12 @@ constexpr float value_of(float x) { return x; }
 constexpr long double value_of(long double x) { return x; }
 
 /// How many numbers a value has side by side, and one of them: more than one has Batch (core/scalars/batch.hpp).
-template <class T> constexpr int lanes_in(const T&) { return 1; }
+template <class T> constexpr int lanes_in(const T& value) {
+  if constexpr (std::is_arithmetic_v<T>)
+    return 1;
+  else
+    return lanes_in(value_of(value));
+}
 template <class T> constexpr double in_lane(const T& value, int lane) {
   if constexpr (std::is_arithmetic_v<T>)
     return double(value);

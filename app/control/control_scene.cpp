@@ -78,8 +78,8 @@ ControlBounds read_bounds(const Section& bounds, std::span<const std::string> co
   return out;
 }
 
-const KeyOf<Number> time_weight_key{"time", {nonnegative}, "", "w of w T", 0.0};
-KeyOf<Number> weight_key(const std::string& control) {
+const KeyOf<Number> weight_of_time_key{"time", {nonnegative}, "", "w of w T", 0.0};
+KeyOf<Number> weight_of_control_key(const std::string& control) {
   return {control, {nonnegative}, "", "w of the integral of w u^2", 0.0};
 }
 
@@ -88,8 +88,9 @@ std::optional<WeightsScene> read_weights(const Section& at, std::span<const std:
   if (!at.has("weights")) return std::nullopt;
   const Section table = at.section("weights", "");
   WeightsScene out;
-  double sum = out.of_time = read_key(table, time_weight_key);
-  for (const std::string& control : controls) sum += out.of_controls.emplace_back(read_key(table, weight_key(control)));
+  double sum = out.of_time = read_key(table, weight_of_time_key);
+  for (const std::string& control : controls)
+    sum += out.of_controls.emplace_back(read_key(table, weight_of_control_key(control)));
   table.finish();
   if (!(sum > 0))
     table.fail("", fmt::format("nothing costs: give one of {} or time a weight", fmt::join(controls, ", ")));
@@ -128,7 +129,8 @@ std::shared_ptr<const StateFormulas> read_formulas(const Section& at, const KeyO
 }
 
 std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::string> states,
-                                    std::span<const std::string> controls, const ControlBounds& bounds) {
+                                    std::span<const std::string> controls, const ControlBounds& bounds,
+                                    bool has_weights) {
   std::vector<PhaseScene> out;
   const std::vector<Section> tables = scene.tables("phase");
   for (const Section& table : tables) {
@@ -152,6 +154,9 @@ std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::s
     phase.constraints_hold = read_key(table, phase_keys::constraints);
     phase.bounds = read_bounds(table.section_or_empty("bounds"), controls, bounds);
     phase.weights = read_weights(table, controls);
+    if (has_weights && !phase.weights && table.section_or_empty("parameters").has("cost"))
+      table.fail("parameters",
+                 "the scene's [weights] say what the motion costs: give the phase its own, or leave out cost");
     const Section through = table.section_or_empty("through");
     for (const std::string& state : states)
       phase.through.push_back(through.has(state) ? std::optional(read_key_or(through, phase_keys::through(state), 0))
@@ -217,7 +222,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   constexpr double none = std::numeric_limits<double>::infinity();
   out.bounds = read_bounds(scene.section_or_empty("bounds"), controls, ControlBounds(controls.size(), {-none, none}));
   out.weights = read_weights(scene, controls);
-  out.phases = read_phases(scene, states, controls, out.bounds);
+  out.phases = read_phases(scene, states, controls, out.bounds, out.weights.has_value());
   if (out.phases.empty()) {
     const Section horizon = scene.section("horizon", "duration and stages");
     out.duration = read_key(horizon, duration_key);
@@ -226,6 +231,12 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   } else if (scene.has("horizon")) {
     scene.fail("horizon", "each [[phase]] has a duration and stages of its own; leave out [horizon]");
   }
+  const bool is_free = out.duration_is_free || std::any_of(out.phases.begin(), out.phases.end(),
+                                                           [](const auto& phase) { return phase.duration_is_free; });
+  if (out.weights && !is_free && !out.end_cost &&
+      std::all_of(out.weights->of_controls.begin(), out.weights->of_controls.end(), [](double w) { return w == 0; }))
+    scene.fail("weights",
+               "all motions cost the same where their time is given: give a control a weight, or let it be free");
   const Section solver = scene.section_or_empty("solver");
   out.method = read_method(solver);
   read_search(solver, out.search);
@@ -246,8 +257,8 @@ std::vector<Key> control_scene_keys(const ControlProblem& problem) {
   const std::vector<std::string> states = problem.states();
   std::vector<Key> bounds;
   for (const std::string& control : problem.controls()) bounds.push_back(bound_key(control));
-  std::vector<Key> weights{time_weight_key};
-  for (const std::string& control : problem.controls()) weights.push_back(weight_key(control));
+  std::vector<Key> weights{weight_of_time_key};
+  for (const std::string& control : problem.controls()) weights.push_back(weight_of_control_key(control));
   std::vector<Key> through;
   for (const std::string& state : states) through.push_back(phase_keys::through(state));
   const Table phase{{phase_keys::name, phase_keys::duration, phase_keys::free, phase_keys::range, phase_keys::stages,

@@ -76,7 +76,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
       out.iterations += found.iterations;
     } else {
       const ControlSearch<Sys> found = search(posed, keep_going);
-      require_time(scene, posed, best_of(found).trajectory);
+      require_time(scene, posed, best_of(found));
       out = described(posed, found);
     }
     out.seconds = processor_time() - before;
@@ -178,44 +178,75 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
                            "what parameters.{} asks for does not hold there; give a state where it does, or change it",
                            limits_[*broken]));
     if (!phase.duration_is_free || std::isfinite(phase.longest) || !can_wait(phase, node)) return;
+    const std::vector<Key> keys = parameters();
+    const bool has_cost = std::any_of(keys.begin(), keys.end(), [](const Key& each) { return each.name == "cost"; });
     const bool in_phases = !posed.scene.phases.empty();
     const Section table = table_of_duration(scene, posed, at_start ? 0 : phases.size() - 1);
     table.fail("free",
-               fmt::format("the motion can wait at its {} at no cost, so that no duration is the best: let time cost "
-                           "something (weights.time), or {}",
-                           key, in_phases ? "give the duration a range" : "leave out free"));
+               fmt::format("the motion can wait at its {} at no cost, so that no duration is the best: {}{}", key,
+                           has_cost ? "let time be the cost (parameters.cost = \"time\"), or a part of it "
+                                      "beside the controls ([weights]), or "
+                                    : "",
+                           in_phases ? "give the duration a range" : "leave out free"));
   }
   static bool comes_back(const Posed& posed) {
     return posed.task.system.groupoid.tau_inverse(posed.task.boundary).isZero(1e-12);
   }
-  static bool went_to_nothing(const ControlPhase<Sys>& phase, const PhaseSteps& found) {
-    constexpr double nothing = 1e-3;  // of the first guess
-    return phase.duration_is_free && found.step * double(phase.stages) <= nothing * phase.duration;
+  /// Whether nothing moves in the phase that begins with stage `first`, of a duration that is free.
+  static bool stands_still(const G& groupoid, const ControlPhase<Sys>& phase, const ControlTrajectory<Sys>& found,
+                           long first) {
+    constexpr double nothing = 1e-6;
+    double way = 0;
+    for (long k = first; k < first + phase.stages; ++k)
+      way += groupoid.tau_inverse(found.arrows[std::size_t(k)]).norm();
+    return phase.duration_is_free && way <= nothing;
+  }
+  static bool is_far_from_guess(const ControlPhase<Sys>& phase, const PhaseSteps& found) {
+    constexpr double far = 1e-3;
+    return phase.duration_is_free && found.step * double(phase.stages) <= far * phase.duration;
   }
   /// Of motions that come back to their start none is the shortest: where there are others, these are meant.
   static void leave_out_none(const Posed& posed, ControlSearch<Sys>& found) {
     if (!comes_back(posed)) return;
     const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
     const auto is_none = [&](const ControlSolution<Sys>& each) {
-      for (std::size_t i = 0; i < phases.size(); ++i)
-        if (went_to_nothing(phases[i], each.trajectory.phases[i])) return true;
+      long first = 0;
+      for (const ControlPhase<Sys>& phase : phases) {
+        if (stands_still(posed.task.system.groupoid, phase, each.trajectory, first)) return true;
+        first += phase.stages;
+      }
       return false;
     };
     if (!std::all_of(found.minima.begin(), found.minima.end(), is_none)) std::erase_if(found.minima, is_none);
   }
+  /// Whether a motion in half of the free durations costs less.
+  static bool has_a_faster_one(const Posed& posed, const ControlSolution<Sys>& found) {
+    ControlTask<Sys> task = posed.task;
+    task.phases = phases_of(task, posed.scene.stages);
+    ControlTrajectory<Sys> path = found.trajectory;
+    for (std::size_t i = 0; i < task.phases.size(); ++i) {
+      ControlPhase<Sys>& phase = task.phases[i];
+      if (std::exchange(phase.duration_is_free, false)) path.phases[i].step /= 2;
+      phase.duration = path.phases[i].step * double(phase.stages);
+    }
+    const ControlReport faster = solve_control(task, std::move(path), posed.scene.search.solver).report;
+    return faster.converged() && faster.cost < found.report.cost;
+  }
   /// Refuses a free duration that went to nothing, where it can be told why.
-  static void require_time(const Section& scene, const Posed& posed, const ControlTrajectory<Sys>& found) {
+  static void require_time(const Section& scene, const Posed& posed, const ControlSolution<Sys>& found) {
     const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
-    for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i) {
+    const ControlTrajectory<Sys>& path = found.trajectory;
+    long first = 0;
+    for (std::size_t i = 0; i < phases.size() && i < path.phases.size(); first += phases[i++].stages) {
       const ControlPhase<Sys>& phase = phases[i];
-      if (!went_to_nothing(phase, found.phases[i])) continue;
       const Section table = table_of_duration(scene, posed, i);
-      if (has_unbounded_control(phase, posed.task.boundary))
+      if (is_far_from_guess(phase, path.phases[i]) && has_unbounded_control(phase, posed.task.boundary) &&
+          (!found.report.converged() || has_a_faster_one(posed, found)))
         table.fail(
             "free",
             "a control that costs nothing and has not both bounds makes the duration as short as one likes: give "
             "them, or leave out free");
-      if (comes_back(posed))
+      if (comes_back(posed) && stands_still(posed.task.system.groupoid, phase, path, first))
         table.fail("free",
                    "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] "
                    "a range or a state on the way");
@@ -225,7 +256,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   static std::string guess_far_from(const Posed& posed, const ControlTrajectory<Sys>& found) {
     const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
     for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i)
-      if (went_to_nothing(phases[i], found.phases[i]))
+      if (is_far_from_guess(phases[i], found.phases[i]))
         return fmt::format("; a free duration came to {:.3g} from the guess of {}: guess it nearer to what it may be",
                            found.phases[i].step * double(phases[i].stages), phases[i].duration);
     return "";

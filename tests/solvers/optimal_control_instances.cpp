@@ -130,12 +130,12 @@ TEST(RandomInstances, OfThePlanarMass) { expect_solved(Instances(PlanarMass(), 3
 TEST(RandomInstances, OfTheHovercraft) { expect_solved(Instances(Hovercraft(), 3, 1, 0.3)); }
 TEST(RandomInstances, OfTheCar) { expect_solved(Instances(SteeredCar(), 3, 0.7, 0.3)); }
 TEST(RandomInstances, OfTheSleigh) { expect_solved(Instances(SteeredSleigh(), 3, 1, 0.3)); }
-TEST(RandomInstances, OfDubinsCar) {
+TEST(RandomInstances, OfCarsOfDubins) {
   Instances<DubinsCar> ways(DubinsCar(), 4, 1, 1);
   ways.let_time_be_free();
   expect_solved(ways);
 }
-TEST(RandomInstances, OfTheReedsSheppCar) {
+TEST(RandomInstances, OfCarsOfReedsAndShepp) {
   Instances<ReedsSheppCar> ways(ReedsSheppCar(), 4, 1, 1);
   ways.let_time_be_free();
   expect_solved(ways);

@@ -33,7 +33,7 @@ TEST(LongControlLoops, HardlyASampleTakesManyIterations) {
   // What docs/optimal_control_measured.md says.
   RecordProperty("samples", int(samples));
   for (const double percent : {50.0, 90.0, 99.0, 99.9, 100.0}) {
-    const auto last = std::size_t(std::ceil(percent / 100 * double(samples)));
+    const auto last = std::size_t(std::ceil(percent * double(samples) / 100 - 1e-9));
     RecordProperty(fmt::format("percentile {}", percent),
                    fmt::format("{} {:.17g}", iterations[last - 1], loop.latency().percentile(percent)));
   }

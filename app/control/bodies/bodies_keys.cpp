@@ -21,6 +21,7 @@ namespace {
 
 using multibody::DirectionCone;
 using multibody::KeepOut;
+using multibody::limit_rounding;
 using multibody::SceneEnd;
 using multibody::Site;
 using multibody::SpeedLimit;
@@ -106,7 +107,18 @@ struct EndOf {
   Vec arm = Vec::Zero();  ///< of the point that is at
   std::optional<Vec> place = {};
   std::optional<multibody::Mat> attitude = {};
+  std::optional<Vec> velocity = {};  ///< of its centre
+  std::optional<Vec> turning = {};   ///< in its frame
 
+  /// How fast a point of a body is at the end, where this says so.
+  std::optional<double> speed_of(const NamedBody& of, const Vec& point) const {
+    if (of.name != body) return std::nullopt;
+    const bool is_pivoted = of.linear < 0;
+    if (turning && (velocity || is_pivoted) && attitude)
+      return (velocity.value_or(Vec::Zero()) + *attitude * turning->cross(point)).norm();
+    if (velocity && point.isZero(0)) return velocity->norm();
+    return std::nullopt;
+  }
   /// Where a point of a body is at the end, where this says so.
   std::optional<Vec> place_of(const NamedBody& of, const Vec& point) const {
     if (of.name != body) return std::nullopt;
@@ -166,6 +178,7 @@ class Reader {
     if (table.has(velocity_key.name) || (at_rest && body.linear >= 0)) {
       if (body.linear < 0) table.fail("velocity", fmt::format("\"{}\" is held at its pivot", body.name));
       const auto v = given_or_zero(table, velocity_key, body.planar ? 2 : 3, at_rest);
+      given.velocity = Vec(v[0], v[1], body.planar ? 0 : v[2]);
       for (int i = 0; i < int(v.size()); ++i) {
         end.velocities.push_back({body.linear, i, v[std::size_t(i)]});
         out_.end.velocities.push_back(fmt::format("velocity of \"{}\" along {}", body.name, axes[std::size_t(i)]));
@@ -175,6 +188,7 @@ class Reader {
     if (!table.has(turning_key.name) && !(at_rest && turns)) return;
     if (!turns) table.fail("angular_velocity", fmt::format("\"{}\" does not turn", body.name));
     const auto w = given_or_zero(table, turning_key, body.planar ? 1 : 3, at_rest);
+    given.turning = body.planar ? Vec(0, 0, w[0]) : Vec(w[0], w[1], w[2]);
     for (int i = 0; i < int(w.size()); ++i) {
       if (body.planar) end.velocities.push_back({body.linear, 2, w[0]});
       if (!body.planar) end.turnings.push_back({body.body.attitude, i, w[std::size_t(i)]});
@@ -218,10 +232,10 @@ class Reader {
     keep_out.name = read_key_or(table, name_key, keep_out.name);
     require_new(table, fmt::format("{} {} {} {} {} {}", int(kind), body.name, exactly(point.arm),
                                    exactly(keep_out.centre), keep_out.radius, exactly(keep_out.normal)));
-    if (keep_out.value(point.place) > multibody::limit_rounding)
+    if (keep_out.value(point.place) > limit_rounding)
       table.fail("", fmt::format("\"{}\" is inside at the start", body.name));
     for (const EndOf& end : ends_)
-      if (const auto place = end.place_of(body, point.arm); place && keep_out.value(*place) > multibody::limit_rounding)
+      if (const auto place = end.place_of(body, point.arm); place && keep_out.value(*place) > limit_rounding)
         table.fail("", fmt::format("\"{}\" is inside at the end that [[end]] gives: change that, or the {}", body.name,
                                    keep_out.kind == KeepOut::Kind::plane ? "plane" : "centre or the radius"));
     out_.task.keep_outs.push_back(keep_out);
@@ -248,7 +262,7 @@ class Reader {
       require_new(table, fmt::format("cone {} {} {} {} {}", body.name, exactly(cone.direction), exactly(cone.axis),
                                      key.name, angle));
       const Vec seen = body.attitude * cone.direction;
-      if (cone.value(body.attitude) > multibody::limit_rounding)
+      if (cone.value(body.attitude) > limit_rounding)
         table.fail(key.name, fmt::format("\"{}\" has its direction {:.4g} rad from the axis at the start", body.name,
                                          std::atan2(seen.cross(cone.axis).norm(), seen.dot(cone.axis))));
       out_.task.cones.push_back(cone);
@@ -270,6 +284,10 @@ class Reader {
       if (body.planar) limit.axes = {0, 1};
       const Vec velocity = body.velocity + body.angular_velocity.cross(Vec(body.attitude * point.arm));
       limit.most = largest(table, speed_key, body, velocity.norm(), "m/s");
+      for (const EndOf& end : ends_)
+        if (const auto speed = end.speed_of(body, point.arm); speed && *speed > limit.most * (1 + limit_rounding))
+          table.fail("speed", fmt::format("\"{}\" has {:.4g} m/s at the end that [[end]] gives: change one of them",
+                                          point_name(body, point.arm), *speed));
       name_speed(table, speed_key, body, point.arm, "speed limit", limit);
     } else if (table.has(limited_point.name)) {
       table.fail(limited_point.name, "is the point that speed is of: give speed, or leave it out");
@@ -297,9 +315,9 @@ class Reader {
     require_new(table, fmt::format("{} {} {} {}", key.name, body.name, exactly(arm), limit.most));
   }
 
-  /// The point at, of which a key speaks: it moves.
+  /// The point at, of which a key speaks: it moves. The body's centre is no point of its own.
   Attachment moving_point(const Section& table, const KeyOf<Number>& key, const NamedBody& body) {
-    Attachment point = point_of(table, limited_point, body);
+    const Attachment point = table.has(limited_point.name) ? point_of(table, limited_point, body) : Attachment{};
     if (body.linear < 0 && point.arm.isZero(0))
       table.fail(key.name, fmt::format("\"{}\" is held at its pivot: give a point of it by at", body.name));
     return point;
@@ -323,7 +341,7 @@ class Reader {
   static double largest(const Section& table, const KeyOf<Number>& key, const NamedBody& body, double at_start,
                         std::string_view unit) {
     const double most = read_key_or(table, key, 0);
-    if (at_start > most * (1 + multibody::limit_rounding))
+    if (at_start > most * (1 + limit_rounding))
       table.fail(key.name, fmt::format("\"{}\" has {:.4g} {} at the start", body.name, at_start, unit));
     return most;
   }

@@ -136,7 +136,8 @@ bool InteriorPoint::take_corrected(const Merit& now, double slope, double fracti
     newton_side(equality_, gap_);
     kkt_.solve(right_, step_);
     slack_directions(gap_);
-    corrected_fraction = fraction_to_boundary(slacks_, slack_step_);
+    corrected_fraction =
+        std::min(fraction_to_boundary(slacks_, slack_step_), detail::fraction_of_durations(step_.primal));
     const Merit corrected = try_step(corrected_fraction);
     if (acceptable(now, corrected, slope, fraction)) {
       take_trial(now, corrected, slope, corrected_fraction);

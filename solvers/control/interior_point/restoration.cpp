@@ -120,7 +120,7 @@ bool InteriorPoint::restore() {
     kkt_.solve_eliminated(right_, step_);
 
     const double slope = dot(gradient_, step_.primal);
-    double fraction = std::min(1.0, detail::fraction_of_durations(step_.primal));
+    double fraction = detail::fraction_of_durations(step_.primal);
     bool lower = false;
     for (; fraction > 1e-12 && !lower; fraction *= lower ? 1 : 0.5) {
       transcription_.try_displacement(step_.primal, fraction);

@@ -2,7 +2,7 @@
 /// How much of a step is tried: a free duration changes by a factor of e at most. What a Newton step says of it from
 /// afar, where time costs something and the motion is not yet one, is to go to nothing, from where nothing leads back.
 ///
-///     const double most = std::min(1.0, fraction_of_durations(step));
+///     const double most = fraction_of_durations(step);
 ///
 /// A detail of InteriorPoint. Nothing throws.
 
@@ -13,9 +13,9 @@
 
 namespace lagroid::detail {
 
-/// Of a displacement, along the logarithms of the durations; infinite where none changes.
+/// Of a displacement, along the logarithms of the durations; one at most.
 inline double fraction_of_durations(const TrajectoryDisplacement& step) {
-  double largest = 0;
+  double largest = 1;
   for (const double change : step.durations) largest = std::max(largest, std::abs(change));
   return 1 / largest;
 }

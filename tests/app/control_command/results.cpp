@@ -300,6 +300,21 @@ TEST_F(ControlResults, WeightsTakeThePlaceOfTheCost) {
   expect_refused(again + "weights.u=-1", "weights.u");
   expect_refused(again + "weights.force=1", "weights.force: unknown key");
   expect_refused(again + "'parameters.cost=\"time\"'", "leave out parameters.cost, or weights");
+  expect_refused(again + "weights.u=0 --set horizon.free=false", "all motions cost the same where their time is given");
+  // Of a phase its own: twice and three times what each costs.
+  const auto cost = [&](const char* first, const char* second) {
+    const fs::path phases = folder_ / "weighed_phases.toml";
+    std::ofstream(phases) << "control = \"double_integrator\"\n[boundary]\nstart = [0, 0]\nend = [1, 0]\n"
+                          << "[weights]\nu = 1.0\n[[phase]]\nduration = 1\nthrough = { x = 0.5, v = 0.5 }\n"
+                          << first << "\n[[phase]]\nduration = 1\n"
+                          << second << '\n';
+    const Outcome two = run("control " + phases.string() + " --json");
+    EXPECT_EQ(two.code, 0) << two.err;
+    return json::parse(two.out).at("cost").get<double>();
+  };
+  const double both = cost("", ""), none = cost("weights.u = 0\nweights.time = 1", "");
+  EXPECT_NEAR(none, 1 + both / 2, 1e-9);
+  EXPECT_NEAR(cost("weights.u = 2", "weights.u = 3"), 2.5 * both, 1e-9);
 }
 
 TEST_F(ControlResults, BoundsMayBeOnOneSide) {

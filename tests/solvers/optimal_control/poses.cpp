@@ -66,18 +66,16 @@ TEST(DubinsCars, CostatesConserveTheirMomentum) {
   EXPECT_GT(spread(momenta(wrong)), 1e-4);
 }
 
-/// The pieces of a way, L, R or S, + forward and - backward; what is shorter than two stages is between two of them.
-std::string word_of(const ControlTrajectory<ReedsSheppCar>& way, double largest_turn) {
+/// The pieces of a way, by what the control of a stage is called; what is one stage long is left out.
+template <class Sys, class Name> std::string pieces_of(const ControlTrajectory<Sys>& way, const Name& name) {
   std::string word;
   std::string piece;
   long stages = 0;
   const auto end = [&] {
     if (stages > 1) word += piece;
   };
-  for (const Vector<double, 2>& u : way.controls) {
-    const bool is_straight = std::abs(u(1)) < 0.5 * largest_turn;
-    std::string here = is_straight ? "S" : u(0) * u(1) > 0 ? "L" : "R";
-    here += u(0) > 0 ? "+" : "-";
+  for (const auto& u : way.controls) {
+    const std::string here = name(u);
     if (here != piece) {
       end();
       piece = here;
@@ -87,6 +85,53 @@ std::string word_of(const ControlTrajectory<ReedsSheppCar>& way, double largest_
   }
   end();
   return word;
+}
+std::string turn_of(double u, double largest) { return std::abs(u) < 0.5 * largest ? "S" : u > 0 ? "L" : "R"; }
+
+/// Of a car that goes both ways: where it turns by u, and goes backward, it turns to the other side.
+std::string word_of(const ControlTrajectory<ReedsSheppCar>& way, double largest_turn) {
+  return pieces_of(way, [&](const Vector<double, 2>& u) {
+    return turn_of(u(0) > 0 ? u(1) : -u(1), largest_turn) + (u(0) > 0 ? "+" : "-");
+  });
+}
+
+/// Of these words, which are as long; where none stands there, more are.
+template <class Words> void expect_word(const std::string& found, const Words& words) {
+  EXPECT_TRUE(words.empty() || std::count(words.begin(), words.end(), found) == 1) << found;
+}
+
+struct DubinsCase {
+  Vector<double, 3> from;
+  Vector<double, 3> to;
+  double largest_turn;
+  double length;
+  std::vector<std::string> words;  // of this length
+};
+
+// In the second a half turn beside a whole one is as long as three others; in the fourth the last piece is of 0.001.
+TEST(DubinsCars, FindTheWordsOfTheShortestWays) {
+  constexpr double pi = std::numbers::pi;
+  const std::vector<DubinsCase> cases{
+      {{0, 0, 0}, {4, 2, pi / 3}, 1, 4.521646683033829, {"LSL"}},
+      {{0, 0, 0}, {2, 0, pi}, 1, 2 * pi, {}},
+      {{0, 0, pi / 2}, {0.5, 0.2, -pi / 2}, 1, 6.7140094618408845, {"LRL"}},
+      {{0, 0, 0}, {1, 1, -2.5}, 1, 5.639685109805628, {"RL", "RLR"}},
+      {{1, -1, 2}, {-3, 2, 0.5}, 0.5, 14.698627564994403, {"LRL"}},
+      {{0, 0, 0}, {0, 1.5, 0}, 1, 7.783185307179586, {"LSL", "RSR"}},
+      {{0, 0, 0.3}, {3, -3, 3}, 1, 6.61794545883391, {"RSR"}},
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const DubinsCase& each = cases[i];
+    const auto found = search_control(dubins(each.from, each.to, each.largest_turn, 5), 800, {.starts = 12});
+    ASSERT_FALSE(found.minima.empty()) << i;
+    const auto& way = found.minima.front().trajectory;
+    EXPECT_NEAR(way.duration(), each.length, 1e-4) << i;
+    const std::string word =
+        pieces_of(way, [&](const Vector<double, 1>& u) { return turn_of(u(0), each.largest_turn); });
+    expect_word(word, each.words);
+    RecordProperty("length " + std::to_string(i + 1), fmt::format("{:.17g} {:.17g}", each.length, way.duration()));
+    RecordProperty("word " + std::to_string(i + 1), word);
+  }
 }
 
 struct ReedsSheppCase {
@@ -121,7 +166,7 @@ TEST(ReedsSheppCars, FindTheShortestWaysAndTheirWords) {
     RecordProperty("length " + std::to_string(i + 1), fmt::format("{:.17g} {:.17g}", each.length, way.duration()));
     const std::string word = word_of(way, each.largest_turn);
     RecordProperty("word " + std::to_string(i + 1), word);
-    EXPECT_TRUE(each.words.empty() || std::count(each.words.begin(), each.words.end(), word) == 1) << i << word;
+    expect_word(word, each.words);
     if (!each.words.empty()) continue;
     for (const Vector<double, 2>& u : way.controls) EXPECT_NEAR(std::abs(u(1)), each.largest_turn, 1e-6);
   }

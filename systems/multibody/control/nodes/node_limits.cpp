@@ -53,8 +53,8 @@ void NodeLimits::require(const SceneControl& task) {
         throw std::invalid_argument("the end that is given is where a cone is not kept to: change one of them");
   }
   for (const SpeedLimit& each : task.speed_limits) {
-    if (each.linear < 0 && each.attitude.index < 0 && each.site.index < 0)
-      throw std::invalid_argument("a speed limit: name a centre or an attitude of a body, or a point");
+    if ((each.linear >= 0) + (each.attitude.index >= 0) + (each.site.index >= 0) != 1)
+      throw std::invalid_argument("a speed limit: name a centre or an attitude of a body, or a point, and one of them");
     if (!(each.most > 0))
       throw std::invalid_argument(fmt::format("a speed limit: its largest speed {} is not positive", each.most));
     if (each.axes.empty() || std::any_of(each.axes.begin(), each.axes.end(), [](int i) { return i < 0 || i > 2; }))
