@@ -84,7 +84,7 @@ KeyOf<Number> weight_of_control_key(const std::string& control) {
 }
 
 /// A table [weights] of a scene, or of a phase of it.
-std::optional<WeightsScene> read_weights(const Section& at, std::span<const std::string> controls) {
+std::optional<WeightsScene> read_weights(const Section& at, std::span<const std::string> controls, bool must_cost) {
   if (!at.has("weights")) return std::nullopt;
   const Section table = at.section("weights", "");
   WeightsScene out;
@@ -92,7 +92,7 @@ std::optional<WeightsScene> read_weights(const Section& at, std::span<const std:
   for (const std::string& control : controls)
     sum += out.of_controls.emplace_back(read_key(table, weight_of_control_key(control)));
   table.finish();
-  if (!(sum > 0))
+  if (must_cost && !(sum > 0))
     table.fail("", fmt::format("nothing costs: give one of {} or time a weight", fmt::join(controls, ", ")));
   if (at.section_or_empty("parameters").has("cost"))
     at.fail("weights", "says what the motion costs: leave out parameters.cost, or weights");
@@ -153,7 +153,7 @@ std::vector<PhaseScene> read_phases(const Section& scene, std::span<const std::s
     phase.stages = read_key(table, phase_keys::stages);
     phase.constraints_hold = read_key(table, phase_keys::constraints);
     phase.bounds = read_bounds(table.section_or_empty("bounds"), controls, bounds);
-    phase.weights = read_weights(table, controls);
+    phase.weights = read_weights(table, controls, phase.duration_is_free);
     if (has_weights && !phase.weights && table.section_or_empty("parameters").has("cost"))
       table.fail("parameters",
                  "the scene's [weights] say what the motion costs: give the phase its own, or leave out cost");
@@ -221,7 +221,7 @@ ControlScene read_control_scene(const Section& scene, std::span<const std::strin
   }
   constexpr double none = std::numeric_limits<double>::infinity();
   out.bounds = read_bounds(scene.section_or_empty("bounds"), controls, ControlBounds(controls.size(), {-none, none}));
-  out.weights = read_weights(scene, controls);
+  out.weights = read_weights(scene, controls, /*must_cost=*/!out.end_cost);
   out.phases = read_phases(scene, states, controls, out.bounds, out.weights.has_value());
   if (out.phases.empty()) {
     const Section horizon = scene.section("horizon", "duration and stages");

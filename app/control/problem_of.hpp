@@ -246,7 +246,11 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
             "free",
             "a control that costs nothing and has not both bounds makes the duration as short as one likes: give "
             "them, or leave out free");
-      if (comes_back(posed) && stands_still(posed.task.system.groupoid, phase, path, first))
+      if (!stands_still(posed.task.system.groupoid, phase, path, first)) continue;
+      if (found.report.converged() && is_any(posed.scene.free_end))
+        table.fail("free",
+                   "no motion to the end, which is free, is cheaper than none: leave out free, or change what costs");
+      if (comes_back(posed))
         table.fail("free",
                    "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] "
                    "a range or a state on the way");

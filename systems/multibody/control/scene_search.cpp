@@ -1,7 +1,10 @@
 #include <lagroid/systems/multibody/control/scene_search.hpp>
 
+#include <lagroid/groupoids/groups/so3.hpp>
 #include <lagroid/solvers/control/search_starts.hpp>
 #include <lagroid/systems/multibody/control/arrow_momenta.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +106,34 @@ ScenePath halved(ControlledScene& scene, const ScenePath& path) {
   return out;
 }
 
+void refuse_wide_steps(const ControlledScene& scene, SceneSolution& solution) {
+  if (!solution.report.converged()) return;
+  const std::vector<char>& planar = scene.motion().model().factors.planar;
+  double widest = 0;
+  long stage = 0;
+  for (long k = 0; k < solution.path.stages(); ++k) {
+    const ControlledNode& from = solution.path.nodes[std::size_t(k)];
+    const ControlledNode& to = solution.path.nodes[std::size_t(k) + 1];
+    for (int f = 0; f < scene.factors(); ++f) {
+      const auto i = std::size_t(f < scene.linear() ? f : f - scene.linear());
+      double turn = 0;
+      if (f >= scene.linear())
+        turn = SO3::log(Mat(from.attitudes[i].transpose() * to.attitudes[i])).norm();
+      else if (planar[i])
+        turn = std::abs(to.places[i](2) - from.places[i](2));
+      if (turn <= widest) continue;
+      widest = turn;
+      stage = k;
+    }
+  }
+  if (widest <= std::numbers::pi / 2) return;
+  solution.report.status = ControlStatus::infeasible;
+  solution.report.message = fmt::format(
+      "stage {} turns a body by {:.2g} rad, and no step may turn one by more than a quarter turn, beyond which it "
+      "would be free: take more stages, or start elsewhere",
+      stage + 1, widest);
+}
+
 SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const ControlOptions& options) {
   SceneTranscription transcription(scene, std::move(start));
   SceneSolution out;
@@ -113,6 +144,7 @@ SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const Control
   });
   out.report = solved.report;
   out.crossover = solved.crossover;
+  refuse_wide_steps(scene, out);
   return out;
 }
 

@@ -49,6 +49,11 @@ ScenePath scene_guess(ControlledScene& scene, int index, const SceneSearchOption
 /// With a node between each two, and the controls of both halves those of the whole.
 ScenePath halved(ControlledScene& scene, const ScenePath& path);
 
+/// A solution in which a step turns a body by more than a quarter turn becomes an infeasible one: momenta of steps
+/// along chords go as the sine of what they turn by, so that of a light body a step by half a turn costs nothing. Those
+/// that solve_scene and solve_scene_by_ipopt return have no such step.
+void refuse_wide_steps(const ControlledScene& scene, SceneSolution& solution);
+
 SceneSolution solve_scene(ControlledScene& scene, ScenePath start, const ControlOptions& options = {});
 
 /// What solves from one start.

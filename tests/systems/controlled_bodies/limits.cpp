@@ -88,6 +88,30 @@ TEST(ControlledBodies, AHandKeepsToASpeed) {
   expect_laws(scene, found);
 }
 
+// Of a light bar half a turn in one step would cost nothing, on any grid.
+TEST(ControlledBodies, NoStepHidesAHalfTurn) {
+  constexpr double inertia = 0.02, angle = 6;
+  for (const long stages : {60, 120}) {
+    SceneControl task = control_of_scene(HingedBar{.weight = 0, .inertia = inertia});
+    task.actuators = {{"motor"}};
+    task.duration = 2;
+    task.stages = stages;
+    task.end = at_rest({{HingedBar::of_bar, {0.5 * std::cos(angle), 0.5 * std::sin(angle), angle}}});
+    ControlledScene scene(task);
+    const SceneSearch found = search_scene(scene, {.starts = 10});
+    ASSERT_FALSE(found.minima.empty()) << found.best_failure.report.message;
+    const double momentum = (inertia + 0.25) * angle;
+    const double cost = 12 * momentum * momentum / 8;
+    for (const SceneSolution& each : found.minima) EXPECT_GE(each.report.cost, 0.99 * cost);
+    EXPECT_NEAR(found.minima.front().report.cost, cost, 0.01 * cost);
+    SceneSolution folded = found.minima.front();
+    folded.path.nodes[5].places[0](2) += 3;
+    refuse_wide_steps(scene, folded);
+    EXPECT_EQ(folded.report.status, ControlStatus::infeasible);
+    EXPECT_NE(folded.report.message.find("stage 5 turns a body by 3"), std::string::npos) << folded.report.message;
+  }
+}
+
 // Velocities of a point of a body that turns in space, behind a joint.
 TEST(ControlledBodies, PointsMoveByTheirVelocities) {
   SceneControl task = control_of_scene(Machine{});

@@ -101,10 +101,11 @@ struct DampedMachine {
 /// hinge and weight one over its arm, the pendulum of mass, length and gravity one.
 struct HingedBar {
   double weight = 2;
+  double inertia = 0.75;  ///< about its centre
 
   template <class S> BasicScene<S> operator()() const {
     BasicScene<S> scene;
-    const Body bar = scene.planar_body(S(1), S(0.75), vec<S>(0.5, 0, 0), vec<S>(0, 0, 0));
+    const Body bar = scene.planar_body(S(1), S(inertia), vec<S>(0.5, 0, 0), vec<S>(0, 0, 0));
     scene.add(BasicCoincidence<S>{{scene.ground(vec<S>(0, 0, 0)), scene.point_of(bar, vec<S>(-0.5, 0, 0))}});
     scene.add(BasicConstantForce<S>{{bar.centre}, vec<S>(weight, 0, 0)});
     scene.begin_switch("motor");

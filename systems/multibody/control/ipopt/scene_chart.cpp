@@ -60,6 +60,7 @@ SceneSolution solve_scene_by_ipopt(ControlledScene& scene, ScenePath start, cons
   out.costates = std::move(found.costates);
   out.inequality_multipliers = std::move(found.inequality_multipliers);
   out.report = std::move(found.report);
+  refuse_wide_steps(scene, out);
   return out;
 }
 
