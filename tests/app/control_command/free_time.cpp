@@ -59,6 +59,11 @@ TEST_F(FreeTime, ATimeThatGoesToNothingIsRefused) {
                  "horizon.free: a control that costs nothing and has not both bounds");
   const std::string bounded = "control " + write(scene + "[bounds]\nu = [-1, 1]\n").string();
   expect_refused(bounded + " --set 'boundary.start=[0,0]'", "horizon.free: the end is the start");
+  const std::string to_a_free_end =
+      "control = 'double_integrator'\n[boundary]\nstart = [0, 0]\nend = [1, 0]\nfree_end = ['x', 'v']\n"
+      "end_cost = '10*(x - 1)^2'\n[weights]\nu = 1\ntime = 100\n[horizon]\nduration = 2\nfree = true\nstages = 20\n";
+  expect_refused("control " + write(to_a_free_end).string(),
+                 "horizon.free: no motion to the end, which is free, is cheaper than none");
   // Where the motion itself takes its time, controls may be as large as they like.
   const Outcome straight =
       run(FreeTime::scene("shortest_way") + " --json --set 'boundary.end=[3,0,0]' --set 'bounds.curvature=[-900,900]'");

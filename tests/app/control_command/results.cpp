@@ -315,6 +315,7 @@ TEST_F(ControlResults, WeightsTakeThePlaceOfTheCost) {
   const double both = cost("", ""), none = cost("weights.u = 0\nweights.time = 1", "");
   EXPECT_NEAR(none, 1 + both / 2, 1e-9);
   EXPECT_NEAR(cost("weights.u = 2", "weights.u = 3"), 2.5 * both, 1e-9);
+  EXPECT_NEAR(cost("weights.u = 0", ""), both / 2, 1e-9);
 }
 
 TEST_F(ControlResults, BoundsMayBeOnOneSide) {
