@@ -1,4 +1,5 @@
 // Built with LAGROID_CHECKED: arrows that do not compose are caught, and gradients that are not those of L.
+#include <lagroid/core/scalars/jet.hpp>
 #include <lagroid/groupoids/groups/so3.hpp>
 #include <lagroid/groupoids/pair.hpp>
 #include <lagroid/groupoids/product.hpp>
@@ -33,6 +34,14 @@ TEST(CheckedBuild, AllowsRoundOffAndEverythingOnGroups) {
                                    PairArrow<double, 1>{Vector<double, 1>(1e6 + 1e-9), Vector<double, 1>(3.0)}));
   const SO3 rotations;
   EXPECT_NO_THROW(rotations.compose(SO3::exp(Vector<double, 3>(1, 2, 3)), SO3::exp(Vector<double, 3>(0, 1, 0))));
+}
+
+TEST(CheckedBuild, SeesThroughDerivativesOfDerivatives) {
+  using S = Jet<Jet<double, 1>, 1>;
+  const Pair<1> groupoid;
+  const auto arrow = [](double from, double to) { return PairArrow<S, 1>{Vector<S, 1>(S(from)), Vector<S, 1>(S(to))}; };
+  EXPECT_NO_THROW(groupoid.compose(arrow(0, 1), arrow(1, 2)));
+  EXPECT_THROW(groupoid.compose(arrow(0, 1), arrow(1.5, 2)), NotComposable);
 }
 
 TEST(CheckedBuild, SeesThroughProducts) {

@@ -292,17 +292,14 @@ TEST_F(Control, LimitsOfBodiesSayWhatIsWrongWithThem) {
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'fore'\nspeed = 0\n", "positive");
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'fore'\nangular_speed = 1\nat = [1, 0, 0]\n",
           "constraint.4.at: is the point that speed is of: give speed, or leave it out");
-  const std::string wheel =
-      "[[body]]\nname = 'wheel'\nkind = 'pivoted'\ninertia = [1, 1, 2]\nangular_velocity = [0, 0, 3]\n"
-      "attitude = [0.8, 0.6, 0, 0]\n";
+  // The wheel turns at the start, or at the end.
+  const std::string wheel = "[[body]]\nname = 'wheel'\nkind = 'pivoted'\ninertia = [1, 1, 2]\n";
+  const std::string turns = "attitude = [0.8, 0.6, 0, 0]\nangular_velocity = [0, 0, 3]\n";
+  const std::string rim = "kind = 'speed'\nbody = 'wheel'\nat = [0, 0.5, 1]\nspeed = 1\n";
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'wheel'\nspeed = 1\n" + wheel,
           "\"wheel\" is held at its pivot: give a point of it by at");
-  refused("arm_of_bodies", "kind = 'speed'\nbody = 'wheel'\nat = [0, 0.5, 1]\nspeed = 1\n" + wheel,
-          "\"wheel\" has 1.5 m/s at the start");
-  const std::string spun =
-      "[[body]]\nname = 'wheel'\nkind = 'pivoted'\ninertia = [1, 1, 2]\n"
-      "[[end]]\nbody = 'wheel'\nattitude = [0.8, 0.6, 0, 0]\nangular_velocity = [0, 0, 3]\n";
-  refused("arm_of_bodies", "kind = 'speed'\nbody = 'wheel'\nat = [0, 0.5, 1]\nspeed = 1\n" + spun,
+  refused("arm_of_bodies", rim + wheel + turns, "\"wheel\" has 1.5 m/s at the start");
+  refused("arm_of_bodies", rim + wheel + "[[end]]\nbody = 'wheel'\n" + turns,
           "\"wheel at (0, 0.5, 1)\" has 1.5 m/s at the end that [[end]] gives");
   const std::string falls = "[[body]]\nname = 'ball'\nkind = 'point'\nmass = 1\nposition = [5, 5, 5]\n";
   refused("arm_of_bodies", "kind = 'speed'\nbody = 'ball'\nangular_speed = 1\n" + falls, "does not turn");

@@ -8,6 +8,10 @@
 #include <lagroid/systems/control/flows/steered_sleigh.hpp>
 
 #include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace lagroid::optimal_control_poses_tests {
 namespace {
@@ -104,11 +108,16 @@ struct CarCase {
   std::vector<std::string> words;
 };
 
-/// That `solve` finds them; it returns the way and its word.
+/// A way and its word, where a start converged.
+template <class Sys> using Found = std::optional<std::pair<ControlTrajectory<Sys>, std::string>>;
+
+/// That `solve` finds them.
 template <class Solve> void expect_ways(const std::vector<CarCase>& cases, const Solve& solve) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto& [from, to, largest_turn, length, words] = cases[i];
-    const auto [way, word] = solve(cases[i]);
+    const auto found = solve(cases[i]);
+    ASSERT_TRUE(found) << i;
+    const auto& [way, word] = *found;
     EXPECT_NEAR(way.duration(), length, 1e-4) << i;
     EXPECT_TRUE(words.empty() || std::count(words.begin(), words.end(), word) == 1) << i << word;
     testing::Test::RecordProperty("length " + std::to_string(i + 1),
@@ -122,20 +131,21 @@ template <class Solve> void expect_ways(const std::vector<CarCase>& cases, const
 // In the second a half turn beside a whole one is as long as three others; in the fourth the last piece is of 0.001.
 TEST(DubinsCars, FindTheWordsOfTheShortestWays) {
   constexpr double pi = std::numbers::pi;
-  expect_ways(
-      {{{0, 0, 0}, {4, 2, pi / 3}, 1, 4.521646683033829, {"LSL"}},
-       {{0, 0, 0}, {2, 0, pi}, 1, 2 * pi, {"LRL", "LSR", "RLR", "LR", "RL"}},
-       {{0, 0, pi / 2}, {0.5, 0.2, -pi / 2}, 1, 6.7140094618408845, {"LRL"}},
-       {{0, 0, 0}, {1, 1, -2.5}, 1, 5.639685109805628, {"RL", "RLR"}},
-       {{1, -1, 2}, {-3, 2, 0.5}, 0.5, 14.698627564994403, {"LRL"}},
-       {{0, 0, 0}, {0, 1.5, 0}, 1, 7.783185307179586, {"LSL", "RSR"}},
-       {{0, 0, 0.3}, {3, -3, 3}, 1, 6.61794545883391, {"RSR"}}},
-      [](const CarCase& each) {
-        const auto found = search_control(dubins(each.from, each.to, each.largest_turn, 5), 800, {.starts = 12});
-        const auto& way = found.minima.empty() ? found.best_failure.trajectory : found.minima.front().trajectory;
-        const auto name = [&](const Vector<double, 1>& u) { return turn_of(u(0), each.largest_turn); };
-        return std::pair(way, pieces_of(way, name));
-      });
+  expect_ways({{{0, 0, 0}, {4, 2, pi / 3}, 1, 4.521646683033829, {"LSL"}},
+               {{0, 0, 0}, {2, 0, pi}, 1, 2 * pi, {"LRL", "LSR", "RLR", "LR", "RL"}},
+               {{0, 0, pi / 2}, {0.5, 0.2, -pi / 2}, 1, 6.7140094618408845, {"LRL"}},
+               {{0, 0, 0}, {1, 1, -2.5}, 1, 5.639685109805628, {"RL", "RLR"}},
+               {{1, -1, 2}, {-3, 2, 0.5}, 0.5, 14.698627564994403, {"LRL"}},
+               {{0, 0, 0}, {0, 1.5, 0}, 1, 7.783185307179586, {"LSL", "RSR"}},
+               {{0, 0, 0.3}, {3, -3, 3}, 1, 6.61794545883391, {"RSR"}}},
+              [](const CarCase& each) {
+                const auto found =
+                    search_control(dubins(each.from, each.to, each.largest_turn, 5), 800, {.starts = 12});
+                if (found.minima.empty()) return Found<DubinsCar>();
+                const auto& way = found.minima.front().trajectory;
+                const auto name = [&](const Vector<double, 1>& u) { return turn_of(u(0), each.largest_turn); };
+                return Found<DubinsCar>({way, pieces_of(way, name)});
+              });
 }
 
 // In the third it turns at the full rate all the way, by pi: every such way that arrives is as long.
@@ -153,9 +163,9 @@ TEST(ReedsSheppCars, FindTheShortestWaysAndTheirWords) {
                 task.lower << -1, -each.largest_turn;
                 task.upper << 1, each.largest_turn;
                 const auto found = search_control(task, 400);
-                const auto& way =
-                    found.minima.empty() ? found.best_failure.trajectory : found.minima.front().trajectory;
-                return std::pair(way, word_of(way, each.largest_turn));
+                if (found.minima.empty()) return Found<ReedsSheppCar>();
+                const auto& way = found.minima.front().trajectory;
+                return Found<ReedsSheppCar>({way, word_of(way, each.largest_turn)});
               });
 }
 
