@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -192,30 +193,27 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   static bool comes_back(const Posed& posed) {
     return posed.task.system.groupoid.tau_inverse(posed.task.boundary).isZero(1e-12);
   }
-  /// Whether nothing moves in the phase that begins with stage `first`, of a duration that is free.
-  static bool stands_still(const G& groupoid, const ControlPhase<Sys>& phase, const ControlTrajectory<Sys>& found,
-                           long first) {
+  /// The first phase in which nothing moves, of those whose durations are free.
+  static std::optional<std::size_t> standing_phase(const Posed& posed, const ControlTrajectory<Sys>& found) {
     constexpr double nothing = 1e-6;
-    double way = 0;
-    for (long k = first; k < first + phase.stages; ++k)
-      way += groupoid.tau_inverse(found.arrows[std::size_t(k)]).norm();
-    return phase.duration_is_free && way <= nothing;
+    const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
+    auto arrow = found.arrows.begin();
+    for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i) {
+      double way = 0;
+      for (long k = 0; k < phases[i].stages; ++k) way += posed.task.system.groupoid.tau_inverse(*arrow++).norm();
+      if (phases[i].duration_is_free && way <= nothing) return i;
+    }
+    return std::nullopt;
   }
-  static bool is_far_from_guess(const ControlPhase<Sys>& phase, const PhaseSteps& found) {
-    constexpr double far = 1e-3;
-    return phase.duration_is_free && found.step * double(phase.stages) <= far * phase.duration;
+  static bool is_much_shorter_than_guessed(const ControlPhase<Sys>& phase, const PhaseSteps& found) {
+    constexpr double much = 1e-3;
+    return phase.duration_is_free && found.step * double(phase.stages) <= much * phase.duration;
   }
   /// Of motions that come back to their start none is the shortest: where there are others, these are meant.
   static void leave_out_none(const Posed& posed, ControlSearch<Sys>& found) {
     if (!comes_back(posed)) return;
-    const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
     const auto is_none = [&](const ControlSolution<Sys>& each) {
-      long first = 0;
-      for (const ControlPhase<Sys>& phase : phases) {
-        if (stands_still(posed.task.system.groupoid, phase, each.trajectory, first)) return true;
-        first += phase.stages;
-      }
-      return false;
+      return standing_phase(posed, each.trajectory).has_value();
     };
     if (!std::all_of(found.minima.begin(), found.minima.end(), is_none)) std::erase_if(found.minima, is_none);
   }
@@ -236,31 +234,30 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
   static void require_time(const Section& scene, const Posed& posed, const ControlSolution<Sys>& found) {
     const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
     const ControlTrajectory<Sys>& path = found.trajectory;
-    long first = 0;
-    for (std::size_t i = 0; i < phases.size() && i < path.phases.size(); first += phases[i++].stages) {
-      const ControlPhase<Sys>& phase = phases[i];
-      const Section table = table_of_duration(scene, posed, i);
-      if (is_far_from_guess(phase, path.phases[i]) && has_unbounded_control(phase, posed.task.boundary) &&
+    for (std::size_t i = 0; i < phases.size() && i < path.phases.size(); ++i)
+      if (is_much_shorter_than_guessed(phases[i], path.phases[i]) &&
+          has_unbounded_control(phases[i], posed.task.boundary) &&
           (!found.report.converged() || has_a_faster_one(posed, found)))
-        table.fail(
-            "free",
-            "a control that costs nothing and has not both bounds makes the duration as short as one likes: give "
-            "them, or leave out free");
-      if (!stands_still(posed.task.system.groupoid, phase, path, first)) continue;
-      if (found.report.converged() && is_any(posed.scene.free_end))
-        table.fail("free",
-                   "no motion to the end, which is free, is cheaper than none: leave out free, or change what costs");
-      if (comes_back(posed))
-        table.fail("free",
-                   "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] "
-                   "a range or a state on the way");
-    }
+        table_of_duration(scene, posed, i)
+            .fail("free",
+                  "a control that costs nothing and has not both bounds makes the duration as short as one likes: give "
+                  "them, or leave out free");
+    const std::optional<std::size_t> standing = standing_phase(posed, path);
+    if (!standing) return;
+    const Section table = table_of_duration(scene, posed, *standing);
+    if (found.report.converged() && is_any(posed.scene.free_end))
+      table.fail("free",
+                 "no motion to the end, which is free, is cheaper than none: leave out free, or change what costs");
+    if (comes_back(posed))
+      table.fail("free",
+                 "the end is the start, so that the shortest motion is none: leave out free, or give [[phase]] "
+                 "a range or a state on the way");
   }
   /// What a solve that failed says of a free duration that was guessed much too long.
-  static std::string guess_far_from(const Posed& posed, const ControlTrajectory<Sys>& found) {
+  static std::string too_long_a_guess(const Posed& posed, const ControlTrajectory<Sys>& found) {
     const std::vector<ControlPhase<Sys>> phases = phases_of(posed.task, posed.scene.stages);
     for (std::size_t i = 0; i < phases.size() && i < found.phases.size(); ++i)
-      if (is_far_from_guess(phases[i], found.phases[i]))
+      if (is_much_shorter_than_guessed(phases[i], found.phases[i]))
         return fmt::format("; a free duration came to {:.3g} from the guess of {}: guess it nearer to what it may be",
                            found.phases[i].step * double(phases[i].stages), phases[i].duration);
     return "";
@@ -384,7 +381,7 @@ template <class Sys> class ControlProblemOf final : public ControlProblem {
     out.by_ipopt = posed.scene.method == ControlMethod::ipopt;
     out.report = best.report;
     if (!best.report.converged()) {
-      out.report.message += guess_far_from(posed, best.trajectory);
+      out.report.message += too_long_a_guess(posed, best.trajectory);
       if (posed.task.end_cost) out.report.message += "; or does boundary.end_cost fall without end?";
     }
     out.crossover = best.crossover;

@@ -41,7 +41,7 @@ template <class Derived, class Sys, int ControlCount, int Inequalities = 0>
 struct ActuatedSystem
     : ControlSystem<Derived, ActuatedGroupoid<Sys>, ControlCount + Sys::arrow_constraints + Sys::object_constraints,
                     2 * Sys::dimension + Sys::arrow_constraints, Inequalities>,
-      WeighedCost<ControlCount> {
+      WeighedCost<Derived, ControlCount> {
   static_assert(StepDependent<Sys> && !TimeDependent<Sys>, "the system writes lagrangian(g, step) (see StepDependent)");
   static_assert(Sys::arrow_constraints == 0 || Nonholonomic<Sys>, "arrow constraints are nonholonomic ones");
   using Motion = typename Sys::GroupoidType;
@@ -59,8 +59,8 @@ struct ActuatedSystem
   template <class A, class S> S cost(const A& g, const AllControls<S>& all, const S& h) const {
     const auto& [arrow, momentum] = g;
     const Vector<S, ControlCount> u = part<0, ControlCount>(all);
-    const S ends = this->rate_of_cost(self(), State<S>{system.groupoid.source(arrow), momentum.source}, u) +
-                   this->rate_of_cost(self(), State<S>{system.groupoid.target(arrow), momentum.target}, u);
+    const S ends = this->cost_rate(State<S>{system.groupoid.source(arrow), momentum.source}, u) +
+                   this->cost_rate(State<S>{system.groupoid.target(arrow), momentum.target}, u);
     return ends * h * 0.5;
   }
 

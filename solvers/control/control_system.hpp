@@ -91,16 +91,14 @@ template <int ControlCount> struct ControlWeights {
   double of_time = 0;                                                               ///< w, not negative
 };
 
-/// A system whose running cost may be given by weights:
+/// A system whose running cost, `running_cost(q, u)` of its own, may be given by weights:
 ///
 ///     task.system.weights = {{1, 4}, 0.5};  // u_1^2 + 4 u_2^2 + 1/2
-template <int ControlCount> struct WeighedCost {
+template <class Derived, int ControlCount> struct WeighedCost {
   std::optional<ControlWeights<ControlCount>> weights = {};
 
- protected:
-  template <class Sys, class Q, class S>
-  S rate_of_cost(const Sys& system, const Q& q, const Vector<S, ControlCount>& u) const {
-    if (!weights) return system.running_cost(q, u);
+  template <class Q, class S> S cost_rate(const Q& q, const Vector<S, ControlCount>& u) const {
+    if (!weights) return static_cast<const Derived&>(*this).running_cost(q, u);
     S sum = S(weights->of_time);
     for (int i = 0; i < ControlCount; ++i) sum += u(i) * u(i) * weights->of_controls(i);
     return sum;

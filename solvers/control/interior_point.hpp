@@ -148,6 +148,8 @@ class InteriorPoint {
   double change_of_inequality(long stage, int i) const;
   void slack_directions(const StageRows& inequality_gap);
   double fraction_to_boundary(const StageRows& at, const StageRows& along) const;
+  /// How much of the step is tried at most: slacks stay positive, and free durations of their size.
+  double largest_fraction() const;
   double slope() const;
   Outcome line_search();
   double merit_rounding(const Merit& now) const;

@@ -24,7 +24,8 @@
 namespace lagroid {
 
 template <class Derived, class G, int ControlCount, int Inequalities = 0>
-struct ControlledFlow : ControlSystem<Derived, G, ControlCount, G::dimension, Inequalities>, WeighedCost<ControlCount> {
+struct ControlledFlow : ControlSystem<Derived, G, ControlCount, G::dimension, Inequalities>,
+                        WeighedCost<Derived, ControlCount> {
   static constexpr int rank = G::dimension;
 
   template <class A, class V, class S, class Value>
@@ -44,12 +45,8 @@ struct ControlledFlow : ControlSystem<Derived, G, ControlCount, G::dimension, In
     }
   }
 
-  /// l(q, u): the class's own, or by weights.
-  template <class Q, class S> S cost_rate(const Q& q, const Vector<S, ControlCount>& u) const {
-    return this->rate_of_cost(self(), q, u);
-  }
   template <class A, class V, class S> S cost(const A& g, const V& u, const S& h) const {
-    return cost_rate(midpoint<S>(g, this->groupoid.tau_inverse(g)), u) * h;
+    return this->cost_rate(midpoint<S>(g, this->groupoid.tau_inverse(g)), u) * h;
   }
   template <class A, class V, class S> Vector<S, rank> constraint(const A& g, const V& u, const S& h) const {
     S cost;
@@ -76,7 +73,7 @@ struct ControlledFlow : ControlSystem<Derived, G, ControlCount, G::dimension, In
   void evaluate(const A& g, const V& u, const S& h, S& cost, Vector<S, rank>& constraint) const {
     constraint = this->groupoid.tau_inverse(g);
     const auto q = midpoint<S>(g, constraint);
-    cost = cost_rate(q, u) * h;
+    cost = this->cost_rate(q, u) * h;
     const Vector<S, rank> velocity = self().flow(q, u);
     for (int i = 0; i < rank; ++i) constraint(i) -= h * velocity(i);
   }

@@ -39,6 +39,10 @@ double InteriorPoint::fraction_to_boundary(const StageRows& at, const StageRows&
   return fraction;
 }
 
+double InteriorPoint::largest_fraction() const {
+  return std::min(fraction_to_boundary(slacks_, slack_step_), detail::fraction_of_durations(step_.primal));
+}
+
 /// d(cost - mu sum log s) along the step.
 double InteriorPoint::slope() const {
   const int n = sizes_.node;
@@ -136,8 +140,7 @@ bool InteriorPoint::take_corrected(const Merit& now, double slope, double fracti
     newton_side(equality_, gap_);
     kkt_.solve(right_, step_);
     slack_directions(gap_);
-    corrected_fraction =
-        std::min(fraction_to_boundary(slacks_, slack_step_), detail::fraction_of_durations(step_.primal));
+    corrected_fraction = largest_fraction();
     const Merit corrected = try_step(corrected_fraction);
     if (acceptable(now, corrected, slope, fraction)) {
       take_trial(now, corrected, slope, corrected_fraction);
@@ -154,7 +157,7 @@ bool InteriorPoint::take_corrected(const Merit& now, double slope, double fracti
 InteriorPoint::Outcome InteriorPoint::line_search() {
   const Merit now = merit(values_, slacks_);
   const double slope = this->slope();
-  const double most = std::min(fraction_to_boundary(slacks_, slack_step_), detail::fraction_of_durations(step_.primal));
+  const double most = largest_fraction();
 
   merit_rounding_ = merit_rounding(now);
   gains_rounding_ = now.violation == 0 && std::abs(slope) <= merit_rounding_;
