@@ -179,10 +179,12 @@ std::vector<MeasuredRun> read_measured(const GradientSubject& subject, const std
                      [&](const MeasuredRun& run) { return std::any_of(run.begin(), run.end(), is_of_it); }))
       throw DataError(fmt::format("{}: nothing is measured of it", column.name));
   }
-  for (const auto& [name, sigma] : options.sigma)
+  for (const auto& given : options.sigma) {
+    const std::string& name = given.first;
     if (std::none_of(fit.columns.begin(), fit.columns.end(),
                      [&](const Fit::Column& each) { return each.name == name; }))
       fit.notes.push_back(fmt::format("--sigma {}: no column of that name is used", name));
+  }
   return out;
 }
 
