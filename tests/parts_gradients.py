@@ -115,11 +115,33 @@ class Gradients(unittest.TestCase):
                            "--set", "time.steps=60", "--of", "node.40.q", "--wrt", "parameters.length", "--check", "--json")
                 self.assertGreater(json.loads(told.stdout)["digits_agreed"], 8, told.stderr)
         for more, said in ((('event=[{name = "low", when = "q", set = ["gravity = 2"]}]',), "by equal variational steps alone"),
-                           ((kicked, "--set", "time.order=4", "--set", "time.method=variational"), "splittings and runge-kutta"),
                            ((kicked, "--set", "time.method=extrapolation", "--set", "time.tolerance=1e-8"), "splittings and runge-kutta")):
             told = run(of_part("pendulum"), "gradient", examples / "pendulum.toml", "--set", "time.method=splitting", "--set", *more)
             self.assertEqual((told.returncode, len(told.stderr.splitlines())), (2, 1), told.stderr)
             self.assertIn(said, told.stderr)
+
+    def test_gradients_and_fits_go_through_events_by_composed_steps(self):
+        kicked = 'event=[{name = "low", when = "q", direction = "falling", kick = ["0.1*p + 0.02*q"]}]'
+        changed = kicked.replace("}]", ', set = ["gravity = 1 + 0.3*p^2 + 0.01*t"]}]')
+        steps = ("--set", "time.steps=200", "--set", "time.order=6")
+        with tempfile.TemporaryDirectory() as folder:
+            for event in (kicked, changed):
+                words = (examples / "pendulum.toml", *steps, "--set", event)
+                told = run(of_part("pendulum"), "gradient", *words, "--of", "events,event.low.2,final", "--check", "--json")
+                self.assertEqual(told.returncode, 0, told.stderr)
+                found = json.loads(told.stdout)
+                self.assertEqual((found["contradicted"], found["untold"]), ([], []))
+                self.assertGreater(found["digits_agreed"], 8)
+                out = pathlib.Path(folder) / f"{event == kicked}"
+                self.assertEqual(run(of_part("pendulum"), "run", *words, "--set", "parameters.length=1.1", "--out", out).returncode, 0)
+                fit = run(of_part("pendulum"), "fit", words[0], out / "trajectory.csv", *words[1:], "--of", "q", "--wrt",
+                          "parameters.length", "--json")
+                if event == changed:
+                    self.assertEqual((fit.returncode, len(fit.stderr.splitlines())), (2, 1), fit.stderr)
+                    self.assertIn("or set numbers", fit.stderr)
+                    continue
+                self.assertEqual(fit.returncode, 0, fit.stderr)
+                self.assertLess(abs(json.loads(fit.stdout)["unknowns"][0]["value"] - 1.1), 1e-8, fit.stdout)
 
     def test_gradients_of_reduced_runs(self):
         program = of_part("kepler").with_name("lagroid-gradient")

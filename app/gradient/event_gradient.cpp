@@ -265,8 +265,8 @@ EventExpressions::EventExpressions(const Event& event, const std::vector<Gradien
   for (const auto& [name, text] : event.set) set.emplace_back(name, smooth(text, event.name, names_in(observed)));
 }
 
-ObservedEvent observed_event(const Event& event, const std::shared_ptr<EventExpressions>& texts) {
-  if (!event.set.empty())
+ObservedEvent observed_event(const Event& event, const std::shared_ptr<EventExpressions>& texts, bool sets) {
+  if (!event.set.empty() && !sets)
     throw std::invalid_argument(
         fmt::format("event \"{}\": what it sets has derivatives in runs of systems by equal variational steps alone; "
                     "leave it out",
@@ -278,15 +278,18 @@ ObservedEvent observed_event(const Event& event, const std::shared_ptr<EventExpr
                     .then = event.then,
                     .count = event.count};
   out.tolerance = std::max(event.tolerance, out.tolerance);
+  for (std::size_t k = 0; k < texts->set.size(); ++k)
+    out.set.push_back(
+        {texts->set[k].first, [texts, k](const VariedVector& seen) { return texts->set[k].second(seen); }});
   return out;
 }
 
 std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, const std::vector<GradientName>& observed,
-                                           int momenta) {
+                                           int momenta, bool sets) {
   std::vector<ObservedEvent> out;
   for (const Event& event : events) {
     const auto texts = std::make_shared<EventExpressions>(event, observed, momenta);
-    ObservedEvent& smooth = out.emplace_back(observed_event(event, texts));
+    ObservedEvent& smooth = out.emplace_back(observed_event(event, texts, sets));
     if (event.kick.empty()) continue;
     smooth.kick = [texts](const VariedVector& seen) {
       VariedVector by(Eigen::Index(texts->kick.size()));
@@ -297,25 +300,37 @@ std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, con
   return out;
 }
 
+std::vector<std::string> numbers_set(const std::vector<ObservedEvent>& events) {
+  std::vector<std::string> out;
+  for (const ObservedEvent& event : events)
+    for (const ObservedEvent::Setting& each : event.set) out.push_back(each.name);
+  return out;
+}
+
 void go_through_events(const BeginCuttable& begin, const std::vector<ObservedEvent>& events, GradientSubject& subject) {
   for (const ObservedEvent& event : events) {
     subject.events.push_back(event.name);
     subject.events_decide.push_back(event.decides());
   }
-  subject.begins_through_events = std::none_of(
-      events.begin(), events.end(), [](const ObservedEvent& each) { return each.then == Event::Then::stop; });
-  subject.begin = [begin, events](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
-    return std::make_unique<MotionThroughEvents>(begin(parameters, nudges), events);
-  };
-  subject.begin_along = [](LinearisedMotion& begun_motion, const Eigen::MatrixXd& directions) {
-    dynamic_cast<MotionThroughEvents&>(begun_motion).begin_along(directions);
-  };
+  // Numbers that are set are parameters of such motions, whether they are asked for or not.
+  const bool sets = !numbers_set(events).empty();
+  subject.begins_through_events = !sets && std::none_of(events.begin(), events.end(), [](const ObservedEvent& each) {
+    return each.then == Event::Then::stop;
+  });
+  if (!sets) {
+    subject.begin = [begin, events](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+      return std::make_unique<MotionThroughEvents>(begin(parameters, nudges), events);
+    };
+    subject.begin_along = [](LinearisedMotion& begun_motion, const Eigen::MatrixXd& directions) {
+      dynamic_cast<MotionThroughEvents&>(begun_motion).begin_along(directions);
+    };
+  }
   const auto all_directions = [begun_by = subject.begun_by, starts = Eigen::Index(subject.start.size())](
                                   const MotionThroughEvents& of, const std::vector<std::string>& parameters,
                                   const std::vector<Nudge>& nudges) {
-    const Eigen::Index of_numbers = of.parameters();
-    Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(of.states() + of_numbers, starts + of_numbers);
-    directions.bottomRightCorner(of_numbers, of_numbers).setIdentity();
+    const auto of_numbers = Eigen::Index(parameters.size());
+    Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(of.states() + of.parameters(), starts + of_numbers);
+    directions.block(of.states(), starts, of_numbers, of_numbers).setIdentity();
     const Eigen::MatrixXd begun =
         begun_by ? begun_by(parameters, nudges) : Eigen::MatrixXd::Identity(starts, directions.cols());
     directions.topRows(begun.rows()) = begun;
@@ -334,9 +349,9 @@ void go_through_events(const BeginCuttable& begin, const std::vector<ObservedEve
     Eigen::MatrixXd directions = all_directions(through, parameters, nudges);
     for (const int each : refused_start) directions.col(each).setZero();
     const Eigen::Index asked = by == ThroughEvents::start_too    ? directions.cols()
-                               : by == ThroughEvents::parameters ? Eigen::Index(through.parameters())
+                               : by == ThroughEvents::parameters ? Eigen::Index(parameters.size())
                                                                  : 0;
-    return through.run(steps, directions.rightCols(asked), node);
+    return through.run(steps, directions.rightCols(asked), node, int(parameters.size()));
   };
 }
 

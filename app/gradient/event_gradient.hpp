@@ -34,11 +34,13 @@ struct EventExpressions {
 };
 
 /// The event with these texts, without its kick and its switches. Throws std::invalid_argument for one that sets
-/// numbers.
-ObservedEvent observed_event(const Event& event, const std::shared_ptr<EventExpressions>& texts);
+/// numbers where the motion `sets` none with derivatives.
+ObservedEvent observed_event(const Event& event, const std::shared_ptr<EventExpressions>& texts, bool sets = false);
 /// The events of a scene of one vector of so many momenta. Throws std::invalid_argument for one that has no derivative.
 std::vector<ObservedEvent> observed_events(const std::vector<Event>& events, const std::vector<GradientName>& observed,
-                                           int momenta);
+                                           int momenta, bool sets);
+/// The names of all numbers that these set.
+std::vector<std::string> numbers_set(const std::vector<ObservedEvent>& events);
 
 /// Leads the motions of a subject that has all but its events through these: `begin` begins motions as the subject's
 /// does.

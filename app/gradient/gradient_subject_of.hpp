@@ -4,7 +4,7 @@
 ///     const GradientSubject subject = gradient_subject_of(module.prepare(scene, context), scene);
 ///
 /// Errors: SceneError for an initial value by steps without derivatives (motion_of_steps.hpp), or with events but no
-/// equal steps of order two; std::invalid_argument for an event without derivatives.
+/// equal steps that can be cut; std::invalid_argument for an event without derivatives.
 
 #include "../scenes/simulation.hpp"
 #include "../scenes/system_module.hpp"
@@ -16,8 +16,7 @@
 #include "velocity_start.hpp"
 
 #include <lagroid/groupoids/pair.hpp>
-#include <lagroid/run/events/event_sensitivities.hpp>
-#include <lagroid/run/expressions/varied_expression.hpp>
+#include <lagroid/run/events/cuttable_variational.hpp>
 #include <lagroid/run/motion/parameter_values.hpp>
 
 #include <fmt/format.h>
@@ -78,41 +77,6 @@ inline void find_refused_reduced(GradientSubject& subject) {
     const auto motion = subject.begin(parameters, {});
     if (motion->advance().converged()) motion->linearise();
   });
-}
-
-/// The events of a scene, of the time and of what is observed. Throws std::invalid_argument for one that has no
-/// derivative.
-template <DiscreteSystem Sys, class Observe>
-std::vector<SmoothEvent<Sys>> smooth_events(const std::vector<Event>& events, const std::vector<GradientName>& observed,
-                                            const Observe& observe) {
-  using Node = EventNode<Sys>;
-  std::vector<SmoothEvent<Sys>> out;
-  for (const Event& event : events) {
-    auto expressions = std::make_shared<EventExpressions>(event, observed, Sys::dimension);
-    const auto numbers = [observe](const Node& node) {
-      const VariedVector seen = observe(node);
-      VariedVector all(seen.size() + 1);
-      all << node.time, seen;
-      return all;
-    };
-    SmoothEvent<Sys> smooth{event.name,
-                            [expressions, numbers](const Node& node) { return expressions->when(numbers(node)); },
-                            event.direction, event.then, event.count};
-    if (!event.kick.empty())
-      smooth.kick = [expressions, numbers](const Node& node) {
-        const VariedVector at = numbers(node);
-        VariedVector by(Sys::dimension);
-        for (int i = 0; i < Sys::dimension; ++i) by(i) = expressions->kick[std::size_t(i)](at);
-        return by;
-      };
-    for (std::size_t k = 0; k < event.set.size(); ++k)
-      smooth.set.push_back({event.set[k].first, [expressions, numbers, k](const Node& node) {
-                              return expressions->set[k].second(numbers(node));
-                            }});
-    smooth.tolerance = std::max(event.tolerance, smooth.tolerance);
-    out.push_back(std::move(smooth));
-  }
-  return out;
 }
 
 }  // namespace differentiating
@@ -187,43 +151,31 @@ GradientSubject gradient_subject_of(const PreparedScene<Sys>& prepared, const Se
   else
     find_refused(out);
   if (value.extent.events.empty()) return out;
+  require_events(value.extent.events, *prepared.begin());
+  const std::vector<ObservedEvent> events =
+      observed_events(value.extent.events, out.observed, n, /*sets=*/by_variational_steps(value));
+  BeginCuttable in_parts;
   if (by_explicit_steps_in_parts(value)) {
-    require_events(value.extent.events, *prepared.begin());
-    const auto in_parts = [begin = out.begin](const std::vector<std::string>& parameters,
-                                              const std::vector<Nudge>& nudges) {
+    in_parts = [begin = out.begin](const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
       return std::unique_ptr<CuttableMotion>(&dynamic_cast<CuttableMotion&>(*begin(parameters, nudges).release()));
     };
-    go_through_events(in_parts, observed_events(value.extent.events, out.observed, n), out);
+  } else if (!by_variational_steps(value)) {
+    scene.fail("event",
+               "gradient goes through events by equal variational steps, splittings and runge-kutta; leave out mode or "
+               "method, or them");
+  } else if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
+    in_parts = [started, observe, set = numbers_set(events), stated = prepared.stated](
+                   const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges) {
+      const auto from = started(nudges);
+      return std::make_unique<CuttableVariational<Sys>>(from.system, variational_integrator(*stated, from), parameters,
+                                                        set, observe);
+    };
   } else {
-    if (!by_single_steps(value))
-      scene.fail(
-          "event",
-          "gradient goes through events by equal steps of order two, splittings and runge-kutta; leave out mode, "
-          "method, order and composition, or them");
-    if constexpr (StepDependent<Sys> || TimeDependent<Sys>) {
-      require_events(value.extent.events, *prepared.begin());
-      const auto events = differentiating::smooth_events<Sys>(value.extent.events, out.observed, observe);
-      for (const SmoothEvent<Sys>& event : events) {
-        out.events.push_back(event.name);
-        out.events_decide.push_back(event.decides());
-      }
-      out.through_events = [started, observe, events, steps = out.steps, stated = prepared.stated](
-                               const std::vector<std::string>& parameters, const std::vector<Nudge>& nudges, long node,
-                               ThroughEvents) {
-        const auto from = started(nudges);
-        SensitivityOptions<Sys> options{.steps = steps, .parameters = parameters};
-        options.observed.node = node;
-        EventSensitivities run =
-            event_sensitivities<Sys>(from.system, variational_integrator(*stated, from), events, options, observe);
-        if constexpr (StartsByVelocity<Sys>) follow_start(slope_of_start(from.system, from.start, parameters), run);
-        return run;
-      };
-    } else {
-      scene.fail("event", fmt::format("{} has a Lagrangian that does not take its step, so that parts of steps have no "
-                                      "derivatives; leave the events out",
-                                      out.system));
-    }
+    scene.fail("event", fmt::format("{} has a Lagrangian that does not take its step, so that parts of steps have no "
+                                    "derivatives; leave the events out",
+                                    out.system));
   }
+  go_through_events(in_parts, events, out);
   return out;
 }
 

@@ -97,11 +97,10 @@ std::unique_ptr<LinearisedMotion> own_motion(int order, const Started<Sys>& from
 
 }  // namespace differentiating
 
-/// Whether steps are those of the discrete Lagrangian, of equal size and of one arrow each; reduced ones are, too.
-template <DiscreteSystem Sys> bool by_single_steps(const StatedInitialValue<Sys>& value) {
+/// Whether steps are those of the discrete Lagrangian, of equal size, perhaps composed; reduced ones are, too.
+template <DiscreteSystem Sys> bool by_variational_steps(const StatedInitialValue<Sys>& value) {
   const IntegratorOptions& options = value.choice.options;
-  return options.mode == TimeMode::fixed && options.fixed == StepKind::variational &&
-         options.composition.stages() == 1 && value.own_order == 0;
+  return options.mode == TimeMode::fixed && options.fixed == StepKind::variational && value.own_order == 0;
 }
 /// The integrator of variational steps. Those of a reduced run are those of the full one, found on a smaller groupoid:
 /// at their solutions the equations of the full system hold, and its derivatives are theirs.

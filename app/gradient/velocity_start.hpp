@@ -10,7 +10,6 @@
 /// Requires a start that keeps the constraints. Nothing throws but std::invalid_argument for a parameter that is none.
 
 #include <lagroid/core/derivatives/velocity_start.hpp>
-#include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 
 #include <string>
@@ -59,24 +58,6 @@ Eigen::MatrixXd slope_of_start(const Sys& system, const State<typename Sys::Grou
                                   out.bottomRows(n));
   });
   return out;
-}
-
-/// What events and the end are found to depend on, by places and momenta at the start, by what the scene gives instead.
-inline void follow_start(const Eigen::MatrixXd& slope, EventSensitivities& run) {
-  const auto follow = [&](auto& by_start, auto& by_parameters) {
-    if (by_start.size() == 0) return;
-    const auto parameters = Eigen::Index(run.parameters.size());
-    const Eigen::MatrixXd by = by_start * slope;
-    by_start = by.leftCols(by.cols() - parameters);
-    if (parameters > 0) by_parameters += by.rightCols(parameters);
-  };
-  follow(run.by_start, run.by_parameters);
-  follow(run.observed_by_start, run.observed_by_parameters);
-  for (EventSensitivities::Begun& each : run.begun) follow(each.by_start, each.by_parameters);
-  for (EventSensitivities::Happened& each : run.happened) {
-    follow(each.by_start, each.by_parameters);
-    follow(each.observed_by_start, each.observed_by_parameters);
-  }
 }
 
 }  // namespace lagroid::app

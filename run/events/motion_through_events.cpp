@@ -31,8 +31,7 @@ MotionThroughEvents::MotionThroughEvents(std::unique_ptr<CuttableMotion> motion,
       events_(std::move(events)),
       happened_(events_.size(), 0),
       touched_(events_.size(), 0),
-      begins_(events_.size(), 0),
-      stays_at_start_(events_.size(), 0) {
+      begins_(events_.size(), 0) {
   for (const ObservedEvent& event : events_) {
     if (!event.function) throw std::invalid_argument(fmt::format("event \"{}\": it has no function", event.name));
     watches_.emplace_back(Event{.name = event.name, .direction = event.direction, .tolerance = event.tolerance});
@@ -41,11 +40,15 @@ MotionThroughEvents::MotionThroughEvents(std::unique_ptr<CuttableMotion> motion,
   for (std::size_t i = 0; i < events_.size(); ++i) watches_[i].next(now[i], time());
 }
 
-double MotionThroughEvents::value_of(std::size_t event, const Eigen::VectorXd& seen) const {
+VariedVector MotionThroughEvents::numbers_seen(const Eigen::VectorXd& seen) const {
   VariedVector all(seen.size() + 1);
   all(0) = time();
   for (Eigen::Index i = 0; i < seen.size(); ++i) all(i + 1) = seen(i);
-  return events_[event].function(all).value;
+  return all;
+}
+
+double MotionThroughEvents::value_of(std::size_t event, const Eigen::VectorXd& seen) const {
+  return events_[event].function(numbers_seen(seen)).value;
 }
 
 std::vector<double> MotionThroughEvents::values() const {
@@ -76,8 +79,7 @@ StepReport MotionThroughEvents::advance() try {
   for (std::size_t i = 0; i < events_.size(); ++i) {
     if (watches_[i].next(now[i], time())) suspects.push_back(i);
     if (steps_ == 1) begins_[i] = watches_[i].starts_there() && is_in_direction(events_[i].direction, -now[i], now[i]);
-    if (steps_ == 1 && begins_[i] != 0 && events_[i].decides() && stays_at_start_[i] == 0)
-      conflict_ = why_none_at_start(i);
+    if (steps_ == 1 && begins_[i] != 0 && events_[i].decides() && !stays_at_start(i)) conflict_ = why_none_at_start(i);
   }
   for (int changes = 0; !suspects.empty() && !is_over_; ++changes) {
     if (changes == most_changes_in_step) {
@@ -94,10 +96,7 @@ StepReport MotionThroughEvents::advance() try {
     // From there on it is another motion.
     const Piece& last = pieces_.back();
     if (const StepReport part = motion_->go(last.duration); !part.converged()) return part;
-    if (last.changes) {
-      motion_->kick(kick_of(last));
-      if (const Switching what = switching_of(last); !what.empty()) motion_->switch_to(what, /*linearised=*/false);
-    }
+    if (last.changes) change(last);
     if (last.ends) {
       is_over_ = true;
       break;
@@ -188,22 +187,36 @@ void MotionThroughEvents::take(const std::vector<Found>& found, double length) {
   }
 }
 
-Eigen::VectorXd MotionThroughEvents::kick_of(const Piece& piece) const {
-  const Eigen::VectorXd seen = motion_->seen();
-  VariedVector all(seen.size() + 1);
-  all(0) = time();
-  for (Eigen::Index i = 0; i < seen.size(); ++i) all(i + 1) = seen(i);
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(motion_->momenta());
+void MotionThroughEvents::change(const Piece& piece) {
+  const VariedVector seen = numbers_seen(motion_->seen());
+  const Eigen::VectorXd kick = kick_of(piece, seen);
+  const std::vector<SetNumber> numbers = numbers_of(piece, seen);
+  if (kick.size() > 0) motion_->kick(kick);
+  if (!numbers.empty()) motion_->set(numbers);
+  if (const Switching what = switching_of(piece); !what.empty()) motion_->switch_to(what, /*linearised=*/false);
+}
+
+/// None where nothing is kicked.
+Eigen::VectorXd MotionThroughEvents::kick_of(const Piece& piece, const VariedVector& seen) const {
+  Eigen::VectorXd out;
   for (const std::size_t i : piece.events) {
     if (!events_[i].kick) continue;
-    const VariedVector by = events_[i].kick(all);
-    if (by.size() != out.size())
+    const VariedVector by = events_[i].kick(seen);
+    if (by.size() != motion_->momenta())
       throw std::invalid_argument(fmt::format("event \"{}\": its kick has {} numbers, the momentum has {}",
-                                              events_[i].name, by.size(), out.size()));
+                                              events_[i].name, by.size(), motion_->momenta()));
+    if (out.size() == 0) out = Eigen::VectorXd::Zero(by.size());
     for (Eigen::Index k = 0; k < out.size(); ++k) out(k) += by(k).value;
     if (!out.allFinite())
       throw std::domain_error(fmt::format("the kick of event \"{}\" is no finite number", events_[i].name));
   }
+  return out;
+}
+
+std::vector<SetNumber> MotionThroughEvents::numbers_of(const Piece& piece, const VariedVector& seen) const {
+  std::vector<SetNumber> out;
+  for (const std::size_t i : piece.events)
+    for (const ObservedEvent::Setting& each : events_[i].set) out.push_back({each.name, each.number(seen).value});
   return out;
 }
 

@@ -53,8 +53,14 @@ struct ObservedEvent {
   double tolerance = 1e-8;                                          ///< nearer to zero, relative, it touches it
   std::function<VariedVector(const VariedVector& seen)> kick = {};  ///< added to the momentum
   Switching switches = {};
+  /// A parameter that is a number, which becomes another one there.
+  struct Setting {
+    std::string name;
+    std::function<VariedNumber(const VariedVector& seen)> number;
+  };
+  std::vector<Setting> set = {};
 
-  bool changes_motion() const { return kick || !switches.empty(); }
+  bool changes_motion() const { return kick || !switches.empty() || !set.empty(); }
   bool decides() const { return changes_motion() || then == Event::Then::stop; }
 };
 
@@ -76,10 +82,10 @@ class MotionThroughEvents final : public LinearisedMotion {
   void serialize(NumberArchive& archive) override;
 
   /// All of a run: along so many directions, columns of (v, mu, theta), what is observed where events happen, and at a
-  /// node or, for -1, at the end, which an event may be. The last of the directions, as many as there are parameters,
-  /// are those of these, the others of the start, along which it begins; where there are none, values alone are found.
-  /// An event that has no derivative ends it with the status `singular`.
-  EventSensitivities run(long steps, const Eigen::MatrixXd& directions, long node = -1);
+  /// node or, for -1, at the end, which an event may be. The last of the directions, `asked` of them or as many as
+  /// there are parameters, are of these, the others of the start, along which it begins; where there are none, values
+  /// alone are found. An event that has no derivative ends it with the status `singular`.
+  EventSensitivities run(long steps, const Eigen::MatrixXd& directions, long node = -1, int asked = -1);
   /// Before the first step, along which directions of (v, mu, theta) it is asked for: an event whose function is zero
   /// at the start has a derivative where it stays zero along all of them. Without it none has.
   void begin_along(const Eigen::MatrixXd& directions);
@@ -106,6 +112,8 @@ class MotionThroughEvents final : public LinearisedMotion {
   using AtPiece = std::function<void(const Piece& piece, const Derivatives& to)>;
 
   double value_of(std::size_t event, const Eigen::VectorXd& seen) const;
+  /// The time and what is seen, as plain numbers: what functions of events take.
+  VariedVector numbers_seen(const Eigen::VectorXd& seen) const;
   /// Of all watched functions where the motion is.
   std::vector<double> values() const;
   std::vector<Found> find(const std::vector<std::size_t>& suspects, double length);
@@ -114,7 +122,10 @@ class MotionThroughEvents final : public LinearisedMotion {
   std::string conflict_of(const std::vector<Found>& found, std::size_t first, std::size_t last) const;
   std::string named(const Piece& piece) const;
   bool grazes(const Piece& piece) const;
-  Eigen::VectorXd kick_of(const Piece& piece) const;
+  /// Kicks, sets and switches, all by what is there before.
+  void change(const Piece& piece);
+  Eigen::VectorXd kick_of(const Piece& piece, const VariedVector& seen) const;
+  std::vector<SetNumber> numbers_of(const Piece& piece, const VariedVector& seen) const;
   Switching switching_of(const Piece& piece) const;
 
   /// Makes the last step again and joins its derivatives: of the pieces that change it, or of all, of which it tells.
@@ -124,7 +135,10 @@ class MotionThroughEvents final : public LinearisedMotion {
   bool lead_to(const Piece& piece, Derivatives& to);
   /// Adds the part to the step's end, after a piece whose time depends on something, or does not.
   bool follow_rest(const std::string& after, bool moves, Derivatives& step);
-  Eigen::MatrixXd kick_by(const Piece& piece) const;
+  /// What becomes of momenta and parameters, by (states, theta, t, s).
+  Eigen::MatrixXd changed_by(const Piece& piece) const;
+  /// Adds the change of a piece, and makes it.
+  void follow_change(const Piece& piece, Derivatives& step);
   /// Switches as it does. What holds from then on has to, whatever the start and the numbers.
   void follow_switch(const Piece& piece, const Switching& what, Derivatives& step);
   /// f(t, seen) by (states, theta, t), where the motion is.
@@ -132,9 +146,11 @@ class MotionThroughEvents final : public LinearisedMotion {
   NodeValues function_by(std::size_t event, const NodeValues& seen) const;
   /// How functions change along directions at the start, zero where that is rounding: a row for each event.
   Eigen::MatrixXd changes_at_start(const Eigen::MatrixXd& directions) const;
+  bool stays_at_start(std::size_t event) const;
   std::string why_none_at_start(std::size_t event) const;
 
   // Rows of the directions of a part.
+  Eigen::Index number_row(const std::string& parameter) const { return states() + motion_->place_of(parameter); }
   Eigen::Index time_row() const { return states() + parameters(); }
   Eigen::Index duration_row() const { return time_row() + 1; }
 
@@ -142,9 +158,9 @@ class MotionThroughEvents final : public LinearisedMotion {
   std::vector<ObservedEvent> events_;
   std::vector<FunctionWatch> watches_;
   std::vector<long> happened_;
-  std::vector<long> touched_;         ///< by events that only record
-  std::vector<char> begins_;          ///< which are zero at the start, and would happen there
-  std::vector<char> stays_at_start_;  ///< whose functions stay what they are there
+  std::vector<long> touched_;  ///< by events that only record
+  std::vector<char> begins_;   ///< which are zero at the start, and would happen there
+  Eigen::MatrixXd at_start_;   ///< how functions change there, along the directions that are asked for
   long steps_ = 0;
   bool is_over_ = false;  ///< an event has ended the run
   // Of the last step.

@@ -79,9 +79,9 @@ Eigen::MatrixXd MotionThroughEvents::changes_at_start(const Eigen::MatrixXd& dir
   return out;
 }
 
-void MotionThroughEvents::begin_along(const Eigen::MatrixXd& directions) {
-  const Eigen::MatrixXd changes = changes_at_start(directions);
-  for (std::size_t i = 0; i < events_.size(); ++i) stays_at_start_[i] = changes.row(Eigen::Index(i)).isZero(0);
+void MotionThroughEvents::begin_along(const Eigen::MatrixXd& directions) { at_start_ = changes_at_start(directions); }
+bool MotionThroughEvents::stays_at_start(std::size_t event) const {
+  return at_start_.rows() > 0 && at_start_.row(Eigen::Index(event)).isZero(0);
 }
 
 std::vector<std::string> MotionThroughEvents::why_none_along(const Eigen::MatrixXd& directions) {
@@ -128,19 +128,47 @@ bool MotionThroughEvents::lead_to(const Piece& piece, Derivatives& to) {
   return true;
 }
 
-Eigen::MatrixXd MotionThroughEvents::kick_by(const Piece& piece) const {
-  const Eigen::Index n = motion_->momenta();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, time_row() + 2);
-  out.middleCols(n, n).setIdentity();
-  for (const std::size_t i : piece.events) {
-    if (!events_[i].kick) continue;
-    const NodeValues by = along(motion_->observe_in_part(), events_[i].kick);
+Eigen::MatrixXd MotionThroughEvents::changed_by(const Piece& piece) const {
+  const bool sets =
+      std::any_of(piece.events.begin(), piece.events.end(), [&](std::size_t i) { return !events_[i].set.empty(); });
+  const Eigen::Index n = motion_->momenta(), rows = sets ? time_row() - n : n;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, time_row() + 2);
+  out.middleCols(n, rows).setIdentity();
+  const NodeValues seen = motion_->observe_in_part();
+  const auto there = [&](const auto& f, const std::string& what) {
+    const NodeValues by = along(seen, f);
     if (!by.derivatives.allFinite())
-      throw EventWithoutDerivative(
-          fmt::format("the kick of event \"{}\" has no derivative at t = {:.6g}", events_[i].name, time()));
-    out.leftCols(time_row() + 1) += by.derivatives;
+      throw EventWithoutDerivative(fmt::format("{} has no derivative at t = {:.6g}", what, time()));
+    return by.derivatives;
+  };
+  for (const std::size_t i : piece.events) {
+    const ObservedEvent& event = events_[i];
+    if (event.kick)
+      out.topLeftCorner(n, time_row() + 1) += there(event.kick, fmt::format("the kick of event \"{}\"", event.name));
+    for (const ObservedEvent::Setting& each : event.set) {
+      const auto number = [&](const VariedVector& all) -> VariedVector {
+        return VariedVector::Constant(1, each.number(all));
+      };
+      auto row = out.row(number_row(each.name) - n);
+      row.setZero();
+      row.head(time_row() + 1) = there(number, fmt::format("what event \"{}\" sets ({})", event.name, each.name));
+    }
   }
   return out;
+}
+
+void MotionThroughEvents::follow_change(const Piece& piece, Derivatives& step) {
+  const VariedVector seen = numbers_seen(motion_->seen());
+  const Eigen::VectorXd kick = kick_of(piece, seen);
+  std::vector<SetNumber> numbers = numbers_of(piece, seen);
+  if (kick.size() > 0 || !numbers.empty()) {
+    const Eigen::MatrixXd by = changed_by(piece);
+    for (SetNumber& each : numbers) each.varies = !by.row(number_row(each.name) - motion_->momenta()).isZero(0);
+    step.push_back(std::make_shared<ReplacedRows>(int(motion_->momenta()), by));
+  }
+  if (kick.size() > 0) motion_->kick(kick);
+  if (!numbers.empty()) motion_->set(numbers);
+  if (const Switching what = switching_of(piece); !what.empty()) follow_switch(piece, what, step);
 }
 
 void MotionThroughEvents::follow_switch(const Piece& piece, const Switching& what, Derivatives& step) {
@@ -196,9 +224,7 @@ bool MotionThroughEvents::follow(Derivatives& step, const AtPiece* tell) {
     last = &piece;
     moves = moves_;
     if (piece.changes) {
-      step.push_back(std::make_shared<ReplacedRows>(motion_->momenta(), kick_by(piece)));
-      motion_->kick(kick_of(piece));
-      if (const Switching what = switching_of(piece); !what.empty()) follow_switch(piece, what, step);
+      follow_change(piece, step);
       motion_->keep();
     }
   }
@@ -225,14 +251,14 @@ bool MotionThroughEvents::linearise() {
   return true;
 }
 
-EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& directions, long node) {
+EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& directions, long node, int asked) {
   EventSensitivities out;
-  const Eigen::Index own = states();
+  const Eigen::Index own = states(), numbers = asked < 0 ? parameters() : asked;
   const bool linearised = directions.cols() > 0;
   Eigen::MatrixXd x = directions;
   Growth growth(linearised ? Eigen::MatrixXd(directions.topRows(own)) : Eigen::MatrixXd::Zero(own, 1).eval());
   const auto split = [&](const Eigen::MatrixXd& all, auto& by_start, auto& by_parameters) {
-    const Eigen::Index of_start = std::max<Eigen::Index>(0, all.cols() - parameters());
+    const Eigen::Index of_start = std::max<Eigen::Index>(0, all.cols() - numbers);
     by_start = all.leftCols(of_start);
     by_parameters = all.rightCols(all.cols() - of_start);
   };
@@ -275,7 +301,6 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
     if (is_over_) return see(motion_->observe_in_part(), end, out);
     see_node();
   };
-  const Eigen::MatrixXd at_start = changes_at_start(directions);
   try {
     begin_along(directions);
     if (node == 0) see_node();
@@ -306,7 +331,7 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
       }
       if (linearised) {
         growth.after_a_step(x.topRows(own));
-        if (x.cols() - parameters() == own && growth.wants_matrix()) growth.see(x.topLeftCorner(own, own));
+        if (x.cols() - numbers == own && growth.wants_matrix()) growth.see(x.topLeftCorner(own, own));
       }
       if (k == node) see_node();
     }
@@ -318,7 +343,7 @@ EventSensitivities MotionThroughEvents::run(long steps, const Eigen::MatrixXd& d
     if (begins_[i] == 0) continue;
     EventSensitivities::Begun& each = out.begun.emplace_back();
     each.event = i;
-    split(at_start.row(Eigen::Index(i)), each.by_start, each.by_parameters);
+    split(at_start_.row(Eigen::Index(i)), each.by_start, each.by_parameters);
   }
   for (std::size_t i = 0; i < events_.size(); ++i)
     for (const std::string& note : watches_[i].notes(touched_[i]))

@@ -96,10 +96,13 @@ template <DiscreteSystem Sys> class CompositionIntegrator {
   }
 
   StepReport advance();
-  /// A share of a step from a point, of the same stages, each cut by it (cut_step.hpp); nothing changes.
-  StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to) {
+  /// A share of a step from a point, of the same stages, each cut by it (cut_step.hpp); nothing changes. The arrows
+  /// before the last are visited, if there is a `visit`.
+  StepReport cut(const TrajectoryPoint<Sys>& from, double share, TrajectoryPoint<Sys>& to,
+                 const std::function<void(const Step<Sys>&, double start, double size)>& visit = {}) {
     TrajectoryPoint<Sys> at = from;
     const auto cut = [&](Stage& stage) {
+      if (visit && &stage != &stages_.front()) visit(at.step, at.time - at.step_size, at.step_size);
       return cut_step(stage.predictor, at, share * stage.predictor.system().h, at);
     };
     const StepReport report = step_by_stages(stages_, cut, [] {});

@@ -73,8 +73,9 @@ template <DiscreteSystem Sys> class Integrator {
   /// Keeps this node, from which the next step can be made in part.
   virtual void keep_node() {}
   /// The point that a share of the last step, 0 to 1, leads to from the node that was kept before it, by a step of the
-  /// same method. Nothing else changes, and nothing at all where it does not converge.
-  virtual StepReport cut(double /*share*/, TrajectoryPoint<Sys>& /*to*/) { return {}; }
+  /// same method, whose arrows before the last are visited. Nothing else changes, and nothing at all where it does not
+  /// converge.
+  virtual StepReport cut(double /*share*/, TrajectoryPoint<Sys>& /*to*/, const Visit& /*inner*/ = {}) { return {}; }
   /// Whether the momentum can be changed inside of a step.
   virtual bool kicks() const { return false; }
   /// Adds to the momentum where a share of the last step leads to, and makes the rest of the step from there, which is

@@ -21,7 +21,8 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
   StepReport advance() override { return integrator_.advance(); }
   const TrajectoryPoint<Sys>& point() const override { return integrator_.point(); }
   MethodTraits traits() const override { return integrator_.traits(); }
-  void for_each_inner_stage(const typename Integrator<Sys>::Visit& visit) const override {
+  using Visit = typename Integrator<Sys>::Visit;
+  void for_each_inner_stage(const Visit& visit) const override {
     if constexpr (requires { integrator_.for_each_inner_stage(visit); }) integrator_.for_each_inner_stage(visit);
   }
   long without_root() const override {
@@ -45,12 +46,14 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
     kept_ = integrator_.point();
     rest_ = 1;
   }
-  [[gnu::cold]] StepReport cut(double share, TrajectoryPoint<Sys>& to) override {
+  [[gnu::cold]] StepReport cut(double share, TrajectoryPoint<Sys>& to, const Visit& inner = {}) override {
     StepReport report;
     share *= rest_;
     if (share == 0) {
       to = kept_;
       report.status = SolveStatus::converged;
+    } else if constexpr (visits_cuts) {
+      report = integrator_.cut(kept_, share, to, inner);
     } else if constexpr (solves_cuts) {
       report = integrator_.cut(kept_, share, to);
     } else if constexpr (begins_cuts) {
@@ -84,6 +87,9 @@ template <DiscreteSystem Sys, class Integrating> class IntegratorOf final : publ
  private:
   static constexpr bool solves_cuts = requires(Integrating & all, TrajectoryPoint<Sys>& point) {
     all.cut(point, 0.5, point);
+  };
+  static constexpr bool visits_cuts = requires(Integrating & all, TrajectoryPoint<Sys>& point, const Visit& inner) {
+    all.cut(point, 0.5, point, inner);
   };
   static constexpr bool begins_cuts = requires(Integrating & all, const TrajectoryPoint<Sys>& point) {
     all.begin_cut(point, 0.5);

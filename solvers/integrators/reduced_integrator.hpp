@@ -70,7 +70,8 @@ template <DiscreteSystem Sys, class Declared> class ReducedIntegrator final : pu
     kept_ = down_;
     kept_point_ = point_;
   }
-  [[gnu::cold]] StepReport cut(double share, TrajectoryPoint<Sys>& to) override {
+  [[gnu::cold]] StepReport cut(double share, TrajectoryPoint<Sys>& to,
+                               const typename Integrator<Sys>::Visit& = {}) override {
     if (share == 0) {
       to = kept_point_;
       return {SolveStatus::converged};

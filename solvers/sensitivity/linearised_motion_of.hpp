@@ -52,7 +52,8 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
       : system_(system),
         integrator_(std::move(integrator)),
         places_(places_of_parameters(system_, parameters)),
-        observe_(std::move(observe)) {
+        observe_(std::move(observe)),
+        comparing_(places_.members.size(), Comparing::due) {
     if (integrator_->traits().explicit_)
       throw std::invalid_argument("steps in closed form have no derivative here: take implicit steps");
   }
@@ -63,6 +64,14 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   int parameters() const override { return int(places_.members.size()); }
   const std::vector<std::string>& parameter_names() const { return places_.names; }
   const TrajectoryPoint<Sys>& point() const { return integrator_->point(); }
+  Integrator<Sys>& integrator() { return *integrator_; }
+  Sys& system() { return system_; }
+  /// This parameter varies along no direction, so that the system may read it as a plain number.
+  void hold(std::size_t parameter) { comparing_[parameter] = Comparing::held; }
+  /// One that was held varies from now on.
+  void vary(std::size_t parameter) {
+    if (comparing_[parameter] == Comparing::held) comparing_[parameter] = Comparing::due;
+  }
   double time() const override { return point().time; }
   StepReport advance() override { return integrator_->advance(); }
 
@@ -75,7 +84,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
       set_time_step(system_, size);
       set_time(system_, start);
       linearise_step(system_, step, places_.members, stages_[used_]);
-      if (!std::exchange(compared_, true)) detail::compare_with_differences(system_, places_, step, stages_[used_]);
+      compare(step, stages_[used_]);
       finite = stages_[used_].factor() && finite;
       duration += size;
       ++used_;
@@ -100,6 +109,16 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   void serialize(NumberArchive& archive) override { integrator_->serialize(archive); }
 
  private:
+  /// Whether derivatives by a parameter are compared with differences.
+  enum class Comparing : char { due, done, held };
+  void compare(const Step<Sys>& step, const LinearStep& linear) {
+    for (std::size_t j = 0; j < comparing_.size(); ++j)
+      if (comparing_[j] == Comparing::due) {
+        comparing_[j] = Comparing::done;
+        detail::compare_with_differences(system_, places_, j, step, linear);
+      }
+  }
+
   Sys system_;
   std::unique_ptr<Integrator<Sys>> integrator_;
   ParameterPlaces places_;
@@ -107,7 +126,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   std::vector<LinearStep> stages_;
   std::size_t used_ = 0;
   double step_size_ = 0;  ///< of the first step
-  bool compared_ = false;
+  std::vector<Comparing> comparing_;
 };
 
 }  // namespace lagroid

@@ -113,13 +113,17 @@ void compare_with_differences(const ParameterPlaces& places, const Eigen::Matrix
   }
 }
 
-/// Those by each parameter, whose columns are behind those of the start.
+/// Those by one of the parameters, or by each, whose columns are behind those of the start.
+template <DiscreteSystem Sys>
+void compare_with_differences(const Sys& system, const ParameterPlaces& places, std::size_t parameter,
+                              const Step<Sys>& step, const LinearStep& linear) {
+  compare_with_differences(system, const_cast<double&>(*places.members[parameter]),  // of the system, no constant
+                           places.names[parameter], step, linear, 2 * Sys::dimension + Eigen::Index(parameter));
+}
 template <DiscreteSystem Sys>
 void compare_with_differences(const Sys& system, const ParameterPlaces& places, const Step<Sys>& step,
                               const LinearStep& linear) {
-  for (std::size_t j = 0; j < places.members.size(); ++j)
-    compare_with_differences(system, const_cast<double&>(*places.members[j]),  // of the system, no constant
-                             places.names[j], step, linear, 2 * Sys::dimension + Eigen::Index(j));
+  for (std::size_t j = 0; j < places.members.size(); ++j) compare_with_differences(system, places, j, step, linear);
 }
 
 }  // namespace detail

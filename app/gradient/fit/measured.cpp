@@ -21,7 +21,7 @@ struct Nodes {
 };
 Nodes nodes_of(const GradientSubject& subject) {
   if (subject.through_events && !subject.begins_through_events)
-    throw GradientRefused("a fit takes runs without events, of bodies those that no event ends; leave out [[event]]");
+    throw GradientRefused("a fit takes runs without events that end them or set numbers; leave those out");
   const auto motion = subject.begin({}, {});
   const double start = motion->time();
   if (!motion->has_equal_steps()) return {start, 0, 0};

@@ -19,7 +19,6 @@
 #include <lagroid/solvers/sensitivity/times/cuttable_motion.hpp>
 
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,9 +95,6 @@ class CuttableExplicit : public LinearisedExplicit<System, Steps, CuttableMotion
     return out;
   }
   void kick(const Eigen::VectorXd& by) override { here_.state.momentum += by; }
-  CuttableMotion::Switched switch_to(const Switching&, bool) override {
-    throw std::invalid_argument("nothing of this motion can be switched");
-  }
 
   void serialize(NumberArchive& archive) override {
     Whole::serialize(archive);

@@ -14,12 +14,15 @@
 /// Directions of a part are states, parameters, the time t at which it begins, and its duration s; a part leaves the
 /// last three as they are.
 ///
+/// Parameters that events set are among the parameters of the motion, and change along it as its state does.
+///
 /// Requires that `part` follows a `go` that converged. Errors: WithoutDerivative, one line, for a change that has none;
 /// std::domain_error for one that is not possible where the motion is, std::invalid_argument for what has no such name.
 
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 #include <lagroid/solvers/sensitivity/times/derivative_chain.hpp>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +31,13 @@ namespace lagroid {
 
 /// What is switched on, true, or off, by its name.
 using Switching = std::vector<std::pair<std::string, bool>>;
+
+/// A parameter that becomes another number, which may depend on the start and on other parameters, or on nothing.
+struct SetNumber {
+  std::string name;
+  double value = 0;
+  bool varies = false;
+};
 
 class CuttableMotion : public LinearisedMotion {
  public:
@@ -49,6 +59,11 @@ class CuttableMotion : public LinearisedMotion {
   virtual int momenta() const { return states() / 2; }
   /// Adds to them.
   virtual void kick(const Eigen::VectorXd& by) = 0;
+  /// The place of a number that can be set, among the parameters.
+  virtual int place_of(const std::string& number) const {
+    throw std::invalid_argument("nothing of this motion can be set: " + number);
+  }
+  virtual void set(const std::vector<SetNumber>& numbers) { place_of(numbers.front().name); }
   /// What a switch is to derivatives: of what it does to the momentum, and, by states, parameters and the time, of what
   /// was held until then and of what is held from then on. There are derivatives where the one makes the other vanish.
   struct Switched {
@@ -56,7 +71,9 @@ class CuttableMotion : public LinearisedMotion {
     Eigen::MatrixXd held = {}, holds = {};
   };
   /// Switches; returns all that where it is asked for.
-  virtual Switched switch_to(const Switching& what, bool linearised) = 0;
+  virtual Switched switch_to(const Switching& /*what*/, bool /*linearised*/) {
+    throw std::invalid_argument("nothing of this motion can be switched");
+  }
 };
 
 }  // namespace lagroid

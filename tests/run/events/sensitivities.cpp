@@ -1,6 +1,8 @@
 // Derivatives through events: those of falls that are known in closed form, and what differences of runs tend to.
 #include <lagroid/core/parameter.hpp>
 #include <lagroid/run/events/event_sensitivities.hpp>
+#include <lagroid/solvers/integrators/composition.hpp>
+#include <lagroid/solvers/sensitivity/propagate.hpp>
 #include <lagroid/systems/mechanical.hpp>
 #include <lagroid/systems/pendulums/damped_pendulum.hpp>
 #include <lagroid/systems/pendulums/driven_pendulum.hpp>
@@ -241,6 +243,100 @@ TEST(EventSensitivities, OfWhatIsSetAndKickedAreWhatDifferencesTendTo) {
     }
 }
 
+/// The same by steps composed of three and of more arrows, some of them backward in time.
+TEST(EventSensitivities, OfComposedStepsAreWhatDifferencesTendTo) {
+  SmoothEvent<Bob> wall{"wall", [](const EventNode<Bob>& node) { return node.object(0) + 0.2; }};
+  wall.direction = Event::Direction::falling;
+  wall.kick = [](const EventNode<Bob>& node) {
+    VariedVector by(2);
+    by << node.momentum(0) * -1.9, node.object(1) * 0.1 + node.time * 0.05;
+    return by;
+  };
+  wall.set = {{"stiffness", [](const EventNode<Bob>& node) -> VariedNumber { return node.momentum(0) * 0.2 + 3.0; }}};
+  const auto observe = [](const EventNode<Bob>& node) {
+    VariedVector all(4);
+    all << node.object, node.momentum;
+    return all;
+  };
+  for (const Composition* composition : {&compositions::suzuki, &compositions::kahan_li_8}) {
+    const auto run = [&](const Eigen::VectorXd& x) {
+      Bob bob;
+      bob.h = 0.11;
+      bob.stiffness = x(4);
+      const State<Pair<2>> start{x.head<2>(), x.segment<2>(2)};
+      auto integrator = std::make_unique<detail::IntegratorOf<Bob, CompositionIntegrator<Bob>>>(
+          bob, start, Pair<2>::unit(start.object), *composition, [] { return std::make_unique<NewtonStep<Bob>>(); });
+      return event_sensitivities<Bob>(bob, std::move(integrator), std::vector{wall},
+                                      {.steps = 90, .parameters = {"stiffness"}}, observe);
+    };
+    Eigen::VectorXd x(5);
+    x << 0.6, -0.5, -0.4, 0.2, 3;
+    const EventSensitivities at = run(x);
+    ASSERT_TRUE(at.converged()) << at.message;
+    ASSERT_GE(at.happened.size(), 2u);
+    for (int i = 0; i < 5; ++i) {
+      const auto all_of = [](const EventSensitivities& of) {
+        Eigen::VectorXd all(6);
+        all << of.happened.at(0).time, of.happened.at(1).time, of.observed;
+        return all;
+      };
+      const auto difference = [&](double by) -> Eigen::VectorXd {
+        const Eigen::VectorXd step = Eigen::VectorXd::Unit(5, i) * by;
+        return (all_of(run(x + step)) - all_of(run(x - step))) / (2 * by);
+      };
+      const Eigen::VectorXd limit = (4 * difference(1e-4) - difference(2e-4)) / 3;
+      Eigen::VectorXd exact(6);
+      const auto column = [&](const auto& by_start, const auto& by_parameters) -> Eigen::VectorXd {
+        return i < 4 ? by_start.col(i) : by_parameters.col(0);
+      };
+      exact << column(at.happened[0].by_start, at.happened[0].by_parameters),
+          column(at.happened[1].by_start, at.happened[1].by_parameters),
+          column(at.observed_by_start, at.observed_by_parameters);
+      EXPECT_LT((exact - limit).norm(), 1e-8 * (1 + limit.norm())) << i << ", " << composition->name;
+    }
+  }
+}
+
+/// Back from few states that are kept, so that steps are made again from where numbers had been set or had not yet.
+TEST(EventSensitivities, GoBackAsTheyGoForward) {
+  Bob bob;
+  bob.h = 0.11;
+  const State<Pair<2>> start{{0.6, -0.5}, {-0.4, 0.2}};
+  const auto observe = [](const EventNode<Bob>& node) {
+    VariedVector all(4);
+    all << node.object, node.momentum;
+    return all;
+  };
+  ObservedEvent wall{.name = "wall", .function = [](const VariedVector& seen) { return VariedNumber(seen(1) + 0.2); }};
+  wall.direction = Event::Direction::falling;
+  wall.kick = [](const VariedVector& seen) {
+    VariedVector by(2);
+    by << seen(3) * -1.9, seen(2) * 0.1 + seen(0) * 0.05;
+    return by;
+  };
+  wall.set = {{"stiffness", [](const VariedVector& seen) { return VariedNumber(seen(3) * 0.2 + 3.0); }}};
+  for (const Composition* composition : {&compositions::single, &compositions::suzuki}) {
+    const auto begun = [&] {
+      auto integrator = std::make_unique<detail::IntegratorOf<Bob, CompositionIntegrator<Bob>>>(
+          bob, start, Pair<2>::unit(start.object), *composition, [] { return std::make_unique<NewtonStep<Bob>>(); });
+      return MotionThroughEvents(
+          std::make_unique<CuttableVariational<Bob>>(bob, std::move(integrator), std::vector<std::string>{"stiffness"},
+                                                     std::vector<std::string>{"stiffness"}, observe),
+          {wall});
+    };
+    for (const Observed& observed : {Observed::at_end(), Observed::at_node(61), Observed::integral()}) {
+      MotionThroughEvents one = begun(), other = begun();
+      const Propagated forward = propagate_forward(one, 90, Eigen::MatrixXd::Identity(5, 5), observed);
+      const Propagated backward = propagate_backward(other, 90, observed, {5});
+      ASSERT_TRUE(forward.converged() && backward.converged()) << forward.message << backward.message;
+      EXPECT_LT((forward.values - backward.values).norm(), 1e-13 * (1 + forward.values.norm()));
+      EXPECT_LT((forward.derivatives - backward.derivatives).norm(), 1e-11 * forward.derivatives.norm());
+    }
+    MotionThroughEvents told = begun();
+    EXPECT_GE(told.run(90, Eigen::MatrixXd::Identity(5, 5)).happened.size(), 2u);
+  }
+}
+
 /// It reads its gravity as a plain number.
 struct PlainBall : MechanicalSystem<PlainBall, 1> {
   double gravity = 2;
@@ -348,8 +444,14 @@ TEST(EventSensitivities, OfWhatOnlyGrazesAreRefusedWhereTheMotionDependsOnIt) {
   const EventSensitivities grazed = event_sensitivities(ball, up, Events{ceiling}, {.steps = 30});
   EXPECT_EQ(grazed.status, SolveStatus::singular);
   EXPECT_NE(grazed.message.find("event \"ceiling\" only grazes zero"), std::string::npos) << grazed.message;
-  const EventSensitivities twice =
-      event_sensitivities(ball, thrown, Events{floor_of_ball(), floor_of_ball()}, {.steps = 30});
+  // Two that only record have their times; of one that ends the run it is not known which is first.
+  SmoothEvent<Ball> end = floor_of_ball();
+  const EventSensitivities both = event_sensitivities(ball, thrown, Events{floor_of_ball(), end}, {.steps = 30});
+  ASSERT_TRUE(both.converged()) << both.message;
+  ASSERT_EQ(both.happened.size(), 2u);
+  EXPECT_EQ(both.happened[0].by_start, both.happened[1].by_start);
+  end.then = Event::Then::stop;
+  const EventSensitivities twice = event_sensitivities(ball, thrown, Events{floor_of_ball(), end}, {.steps = 30});
   EXPECT_EQ(twice.status, SolveStatus::singular);
   EXPECT_NE(twice.message.find("happen together"), std::string::npos) << twice.message;
 }
