@@ -8,7 +8,7 @@
 #include "event_gradient.hpp"
 #include "system_gradients.hpp"
 
-#include <lagroid/run/events/motion_through_events.hpp>
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 #include <lagroid/systems/multibody/sensitivity/linearised_controlled_scene.hpp>
 #include <lagroid/systems/multibody/sensitivity/linearised_scene.hpp>

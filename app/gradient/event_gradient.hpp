@@ -9,8 +9,8 @@
 
 #include "gradient_table.hpp"
 
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 #include <lagroid/run/events/event.hpp>
-#include <lagroid/run/events/motion_through_events.hpp>
 #include <lagroid/run/expressions/varied_expression.hpp>
 #include <lagroid/run/motion/motion.hpp>
 

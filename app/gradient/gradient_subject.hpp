@@ -7,7 +7,7 @@
 /// Errors of `begin`: WithoutDerivative then, or at the first linearised step; std::invalid_argument for an unknown
 /// name.
 
-#include <lagroid/run/events/event_derivatives.hpp>
+#include <lagroid/run/events/derivatives/event_derivatives.hpp>
 #include <lagroid/solvers/sensitivity/linearised_motion.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>
 

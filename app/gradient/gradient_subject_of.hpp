@@ -16,7 +16,7 @@
 #include "velocity_start.hpp"
 
 #include <lagroid/groupoids/pair.hpp>
-#include <lagroid/run/events/cuttable_variational.hpp>
+#include <lagroid/run/events/derivatives/cuttable_variational.hpp>
 #include <lagroid/run/motion/parameter_values.hpp>
 
 #include <fmt/format.h>

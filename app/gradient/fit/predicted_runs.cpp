@@ -1,6 +1,6 @@
 #include "predicted_runs.hpp"
 
-#include <lagroid/run/events/motion_through_events.hpp>
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 
 #include <fmt/format.h>
 

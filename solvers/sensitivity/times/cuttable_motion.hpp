@@ -1,6 +1,7 @@
 #pragma once
 /// A motion whose steps can be made in part and which can be changed in between, linearised by the durations of the
-/// parts too: what derivatives go through events of (run/events/motion_through_events.hpp), whatever its system.
+/// parts too: what derivatives go through events of (run/events/derivatives/motion_through_events.hpp), whatever its
+/// system.
 ///
 ///     motion.keep();                           // at a node
 ///     if (motion.advance().converged() && motion.go(0.3 * h).converged()) {  // where something happens

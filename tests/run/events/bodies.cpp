@@ -1,6 +1,6 @@
 // Derivatives of scenes of bodies through events: impacts, kicks, what is let go and what is caught, against
 // extrapolated differences of runs from starts and numbers that are drawn, forward against backward, and what has none.
-#include <lagroid/run/events/motion_through_events.hpp>
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 #include <lagroid/solvers/testing/sensitivity_laws.hpp>
 #include <lagroid/systems/multibody/effects.hpp>

@@ -2,7 +2,7 @@
 // that they make, against extrapolated differences of runs from other starts and parameters, forward against backward.
 #include "../../solvers/sensitivity/differences.hpp"
 
-#include <lagroid/run/events/motion_through_events.hpp>
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 #include <lagroid/solvers/sensitivity/explicit/linearised_runge_kutta.hpp>
 #include <lagroid/solvers/sensitivity/explicit/linearised_splitting.hpp>
 #include <lagroid/systems/kepler.hpp>

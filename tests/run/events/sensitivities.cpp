@@ -1,6 +1,6 @@
 // Derivatives through events: those of falls that are known in closed form, and what differences of runs tend to.
 #include <lagroid/core/parameter.hpp>
-#include <lagroid/run/events/event_sensitivities.hpp>
+#include <lagroid/run/events/derivatives/event_sensitivities.hpp>
 #include <lagroid/solvers/integrators/composition.hpp>
 #include <lagroid/solvers/sensitivity/propagate.hpp>
 #include <lagroid/systems/mechanical.hpp>
@@ -132,8 +132,8 @@ TEST(EventSensitivities, ObserveWhereEventsHappenAndAtANode) {
   EXPECT_THROW(event_sensitivities<Ball>(ball, thrown, Events{}, options, observe), std::invalid_argument);
 }
 
-TEST(EventSensitivities, AreWhatDifferencesTendTo) {
-  // A bob that a wall throws back twice, with a push that depends on where and when.
+/// A wall that throws a bob back, with a push that depends on where and when.
+SmoothEvent<Bob> wall_of_bob() {
   SmoothEvent<Bob> wall{"wall", [](const EventNode<Bob>& node) { return node.object(0) + 0.2; }};
   wall.direction = Event::Direction::falling;
   wall.kick = [](const EventNode<Bob>& node) {
@@ -141,6 +141,11 @@ TEST(EventSensitivities, AreWhatDifferencesTendTo) {
     by << node.momentum(0) * -1.9, node.object(1) * 0.1 + node.time * 0.05;
     return by;
   };
+  return wall;
+}
+
+TEST(EventSensitivities, AreWhatDifferencesTendTo) {
+  const SmoothEvent<Bob> wall = wall_of_bob();
   const auto run = [&](Vector<double, 2> q, Vector<double, 2> mu, double stiffness) {
     Bob bob;
     bob.h = 0.07;
@@ -245,13 +250,7 @@ TEST(EventSensitivities, OfWhatIsSetAndKickedAreWhatDifferencesTendTo) {
 
 /// The same by steps composed of three and of more arrows, some of them backward in time.
 TEST(EventSensitivities, OfComposedStepsAreWhatDifferencesTendTo) {
-  SmoothEvent<Bob> wall{"wall", [](const EventNode<Bob>& node) { return node.object(0) + 0.2; }};
-  wall.direction = Event::Direction::falling;
-  wall.kick = [](const EventNode<Bob>& node) {
-    VariedVector by(2);
-    by << node.momentum(0) * -1.9, node.object(1) * 0.1 + node.time * 0.05;
-    return by;
-  };
+  SmoothEvent<Bob> wall = wall_of_bob();
   wall.set = {{"stiffness", [](const EventNode<Bob>& node) -> VariedNumber { return node.momentum(0) * 0.2 + 3.0; }}};
   const auto observe = [](const EventNode<Bob>& node) {
     VariedVector all(4);

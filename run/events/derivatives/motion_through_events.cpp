@@ -1,4 +1,4 @@
-#include <lagroid/run/events/motion_through_events.hpp>
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 
 #include <fmt/format.h>
 

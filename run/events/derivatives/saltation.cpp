@@ -1,5 +1,5 @@
 // How the derivatives of a motion pass through its events: the saltation matrices of the discrete motion.
-#include <lagroid/run/events/motion_through_events.hpp>
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 
 #include <lagroid/solvers/sensitivity/growth/growth.hpp>
 

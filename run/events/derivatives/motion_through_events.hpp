@@ -22,8 +22,8 @@
 /// std::invalid_argument for an event without a function, for a kick of another size, and for a step after the event
 /// that ends the run, of which `run` alone knows the end. Source: as of event_sensitivities.hpp.
 
+#include <lagroid/run/events/derivatives/event_derivatives.hpp>
 #include <lagroid/run/events/event.hpp>
-#include <lagroid/run/events/event_derivatives.hpp>
 #include <lagroid/run/events/function_watch.hpp>
 #include <lagroid/solvers/sensitivity/times/cuttable_motion.hpp>
 #include <lagroid/solvers/sensitivity/varied_parameters.hpp>

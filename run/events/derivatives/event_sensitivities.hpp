@@ -28,9 +28,9 @@
 /// plain number: the first step that it is in is compared with differences. Source: implicit function theorem at the
 /// partial step; Hiskens and Pai, IEEE Trans. Circuits Syst. I 47, 2000, 204 (flows).
 
-#include <lagroid/run/events/cuttable_variational.hpp>
-#include <lagroid/run/events/event_derivatives.hpp>
-#include <lagroid/run/events/motion_through_events.hpp>
+#include <lagroid/run/events/derivatives/cuttable_variational.hpp>
+#include <lagroid/run/events/derivatives/event_derivatives.hpp>
+#include <lagroid/run/events/derivatives/motion_through_events.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 
 #include <algorithm>
