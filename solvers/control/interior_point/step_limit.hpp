@@ -2,7 +2,7 @@
 /// How much of a step is tried: a free duration changes by a factor of e at most. What a Newton step says of it from
 /// afar, where time costs something and the motion is not yet one, is to go to nothing, from where nothing leads back.
 ///
-///     const double most = fraction_of_durations(step);
+///     const double most = detail::fraction_of_durations(step);
 ///
 /// A detail of InteriorPoint. Nothing throws.
 
