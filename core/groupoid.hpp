@@ -294,10 +294,11 @@ template <class Derived, int Dimension> class LieGroupoid {
   /// The `end_gap` that rounding may leave.
   static constexpr double largest_end_gap = 1e-9;
 
-  /// Throws NotComposable unless beta(g) = alpha(h) up to `largest_end_gap`.
+  /// Throws NotComposable unless beta(g) = alpha(h) up to `largest_end_gap`. Ends that are no numbers are let through:
+  /// of these a status tells.
   template <class A> void require_composable(const A& g, const A& h) const {
     const double gap = end_gap(g, self().source(h));
-    if (gap <= largest_end_gap) return;
+    if (!(gap > largest_end_gap)) return;
     std::ostringstream message;
     message << Derived::name() << ": arrows do not compose: the first ends at ("
             << coordinates_of_object(self().target(g)).transpose() << "), the second starts at ("

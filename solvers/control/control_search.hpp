@@ -202,7 +202,7 @@ ControlTrajectory<Sys> control_guess(const ControlTask<Sys>& task, long stages, 
   const int bent = index <= bends_first ? index - 2 : index / 2;
   // Of three bends in succession one winds forward about each loop, one backward and one not at all.
   Eigen::VectorXd turns = Eigen::VectorXd::Zero(loop_count(task.system));
-  for (int i = 0; i < turns.size(); ++i) turns(i) = std::array<int, 3>{1, -1, 0}[std::size_t((bent + i) % 3)];
+  for (int i = 0; i < turns.size(); ++i) turns(i) = std::array<int, 3>{1, -1, 0}[std::size_t((bent + 3 + i) % 3)];
 
   ArrowOf<G> reached = groupoid.unit(groupoid.source(task.boundary));
   ArrowOf<G> before = reached;

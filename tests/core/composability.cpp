@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace lagroid;
 
 namespace {
@@ -42,6 +44,15 @@ TEST(CheckedBuild, SeesThroughDerivativesOfDerivatives) {
   const auto arrow = [](double from, double to) { return PairArrow<S, 1>{Vector<S, 1>(S(from)), Vector<S, 1>(S(to))}; };
   EXPECT_NO_THROW(groupoid.compose(arrow(0, 1), arrow(1, 2)));
   EXPECT_THROW(groupoid.compose(arrow(0, 1), arrow(1.5, 2)), NotComposable);
+}
+
+TEST(CheckedBuild, LeavesWhatIsNoNumberToTheStatus) {
+  const Pair<1> groupoid;
+  const auto arrow = [](double from, double to) {
+    return PairArrow<double, 1>{Vector<double, 1>(from), Vector<double, 1>(to)};
+  };
+  EXPECT_NO_THROW(groupoid.compose(arrow(0, std::nan("")), arrow(1, 2)));
+  EXPECT_NO_THROW(groupoid.compose(arrow(0, HUGE_VAL), arrow(1, 2)));
 }
 
 TEST(CheckedBuild, SeesThroughProducts) {
