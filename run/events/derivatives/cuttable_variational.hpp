@@ -69,9 +69,10 @@ class CuttableVariational final : public CuttableMotion {
         places_(places_of_parameters(in_part_.plain(), whole_.parameter_names())),
         members_(places_.members),
         observe_(std::move(observe)),
-        set_(set),
         is_compared_(places_.members.size() + 1, 0),
-        here_(whole_.point()) {
+        here_(whole_.point()),
+        size_(time_step(in_part_.plain())),
+        rest_(size_) {
     members_.push_back(&start_of_part());
     members_.push_back(&in_part_.h);
     const std::size_t asked = places_of_parameters(system, parameters).names.size();
@@ -210,7 +211,7 @@ class CuttableVariational final : public CuttableMotion {
   };
 
   /// Of the step, or of its rest after a change, that has been gone.
-  double share() const { return gone_ == 0 ? 0 : gone_ / rest_; }
+  double share() const { return gone_ == 0 || rest_ == 0 ? 0 : gone_ / rest_; }
   void go_on_after(const StepReport& report) {
     if (!report.converged()) throw report;
     rest_ -= gone_;
@@ -243,8 +244,9 @@ class CuttableVariational final : public CuttableMotion {
   /// What has been set is what it was where the archive was written.
   void restore_numbers(NumberArchive& archive) {
     std::vector<ParameterValue> to;
-    for (const std::string& name : set_) {
-      const double now = *places_.members[std::size_t(place_of(name))];
+    for (std::size_t j = 0; j < places_.names.size(); ++j) {
+      const std::string& name = places_.names[j];
+      const double now = *places_.members[j];
       double value = now;
       archive(value);
       if (value != now) to.push_back({name, value});
@@ -261,12 +263,11 @@ class CuttableVariational final : public CuttableMotion {
   ParameterPlaces places_;
   std::vector<const double*> members_;  ///< and when an arrow begins, and its size
   ObserveTimedNode<Sys> observe_;
-  std::vector<std::string> set_;
   std::vector<char> is_compared_;  ///< which members, and the size, are as differences of a step say
   std::vector<char> is_varied_;    ///< by what is set
   TrajectoryPoint<Sys> here_;      ///< in a step, or at a node
-  double size_ = 0;                ///< of the last step
-  double rest_ = 0;                ///< of it, from where parts begin
+  double size_;                    ///< of the last step
+  double rest_;                    ///< of it, from where parts begin
   double gone_ = 0;                ///< of it, by the last part
   std::vector<Arrow> arrows_;      ///< of that part
   bool is_changed_ = false;        ///< where parts begin

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -103,7 +104,10 @@ StepReport MotionThroughEvents::advance() try {
     }
     motion_->keep();
     const std::vector<double> there = values();
-    rest_ = std::max(0.0, end - time());
+    // What rounding of times leaves is no rest.
+    constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+    rest_ = end - time();
+    if (!(rest_ > rounding * std::max(std::abs(end), size_))) rest_ = 0;
     if (const StepReport part = motion_->go(rest_); !part.converged()) return part;
     motion_->end_step();
     const std::vector<double> after = values();

@@ -336,6 +336,20 @@ TEST(EventSensitivities, GoBackAsTheyGoForward) {
   }
 }
 
+/// At given times, which are those of nodes but for rounding.
+TEST(EventSensitivities, GoThroughKicksAtTheTimesOfNodes) {
+  Bob bob;
+  bob.h = 0.1;
+  const State<Pair<2>> start{{0.6, -0.5}, {-0.4, 0.2}};
+  for (int k = 1; k < 60; ++k) {
+    SmoothEvent<Bob> kick{"kick", [k](const EventNode<Bob>& node) { return node.time - k / 10.0; }};
+    kick.kick = [](const EventNode<Bob>& node) { return VariedVector(node.momentum * VariedNumber(0.1)); };
+    const EventSensitivities run = event_sensitivities(bob, start, std::vector{kick}, {.steps = k + 3});
+    ASSERT_TRUE(run.converged()) << k << ": " << run.message;
+    EXPECT_EQ(run.happened.size(), 1u) << k;
+  }
+}
+
 /// It reads its gravity as a plain number.
 struct PlainBall : MechanicalSystem<PlainBall, 1> {
   double gravity = 2;
