@@ -53,7 +53,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
         integrator_(std::move(integrator)),
         places_(places_of_parameters(system_, parameters)),
         observe_(std::move(observe)),
-        comparing_(places_.members.size(), Comparing::due) {
+        comparisons_(places_.members.size()) {
     if (integrator_->traits().explicit_)
       throw std::invalid_argument("steps in closed form have no derivative here: take implicit steps");
   }
@@ -66,12 +66,8 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   const TrajectoryPoint<Sys>& point() const { return integrator_->point(); }
   Integrator<Sys>& integrator() { return *integrator_; }
   Sys& system() { return system_; }
-  /// This parameter varies along no direction, so that the system may read it as a plain number.
-  void hold(std::size_t parameter) { comparing_[parameter] = Comparing::held; }
-  /// One that was held varies from now on.
-  void vary(std::size_t parameter) {
-    if (comparing_[parameter] == Comparing::held) comparing_[parameter] = Comparing::due;
-  }
+  /// Of its parameters.
+  Comparisons& comparisons() { return comparisons_; }
   double time() const override { return point().time; }
   StepReport advance() override { return integrator_->advance(); }
 
@@ -84,7 +80,8 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
       set_time_step(system_, size);
       set_time(system_, start);
       linearise_step(system_, step, places_.members, stages_[used_]);
-      compare(step, stages_[used_]);
+      comparisons_.take(
+          [&](std::size_t j) { detail::compare_with_differences(system_, places_, j, step, stages_[used_]); });
       finite = stages_[used_].factor() && finite;
       duration += size;
       ++used_;
@@ -109,16 +106,6 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   void serialize(NumberArchive& archive) override { integrator_->serialize(archive); }
 
  private:
-  /// Whether derivatives by a parameter are compared with differences.
-  enum class Comparing : char { due, done, held };
-  void compare(const Step<Sys>& step, const LinearStep& linear) {
-    for (std::size_t j = 0; j < comparing_.size(); ++j)
-      if (comparing_[j] == Comparing::due) {
-        comparing_[j] = Comparing::done;
-        detail::compare_with_differences(system_, places_, j, step, linear);
-      }
-  }
-
   Sys system_;
   std::unique_ptr<Integrator<Sys>> integrator_;
   ParameterPlaces places_;
@@ -126,7 +113,7 @@ template <DiscreteSystem Sys> class LinearisedMotionOf final : public Linearised
   std::vector<LinearStep> stages_;
   std::size_t used_ = 0;
   double step_size_ = 0;  ///< of the first step
-  std::vector<Comparing> comparing_;
+  Comparisons comparisons_;
 };
 
 }  // namespace lagroid

@@ -23,12 +23,55 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lagroid {
 
 using VariedVector = Eigen::Matrix<VariedNumber, Eigen::Dynamic, 1>;
 
+/// Which derivatives are compared with differences: each once, and one that is held not before it varies.
+class Comparisons {
+ public:
+  explicit Comparisons(std::size_t count) : states_(count, State::due) {}
+  /// It varies along no direction, so that a formula may read it as a plain number.
+  void hold(std::size_t member) { states_[member] = State::held; }
+  /// If it was held, it varies from now on.
+  void vary(std::size_t member) {
+    if (states_[member] == State::held) states_[member] = State::due;
+  }
+  /// Visits those that are due, which are done then.
+  template <class Visit> void take(const Visit& visit) {
+    for (std::size_t j = 0; j < states_.size(); ++j)
+      if (states_[j] == State::due) {
+        states_[j] = State::done;
+        visit(j);
+      }
+  }
+
+ private:
+  enum class State : char { due, done, held };
+  std::vector<State> states_;
+};
+
 namespace detail {
+
+/// f(object, momentum, configuration), the momentum the one that is reported, with its tangents by (v, mu, theta) from
+/// direction `first` on; beyond all of them, its values alone.
+template <DiscreteSystem Sys, class F>
+VariedVector varied_at(const Sys& system, const ParameterPlaces& places, const TrajectoryPoint<Sys>& point, int first,
+                       const F& f) {
+  using G = typename Sys::GroupoidType;
+  using V = VariedNumber;
+  constexpr int n = Sys::dimension;
+  const G& groupoid = system.groupoid;
+  const Vector<double, n> zero = Vector<double, n>::Zero();
+  const VariedMembers varying(places.members, 2 * n - first);
+  const auto moved = groupoid.tau(groupoid.template cast_object<V>(point.state.object), varied_along(zero, -first));
+  const Vector<V, n> momentum = varied_along(point.state.momentum, n - first);
+  const ObjectOf<G, V> object = groupoid.target(moved);
+  return f(object, varied_tangent_momentum(system, object, momentum),
+           groupoid.compose(groupoid.template cast<V>(point.configuration), moved));
+}
 
 /// f(first, object, momentum, configuration), the momentum the one that is reported, with its derivatives by (v, mu,
 /// theta) and by `beside` more directions, which f varies itself: a row for each number. `first` is the direction of
@@ -36,21 +79,13 @@ namespace detail {
 template <DiscreteSystem Sys, class F>
 NodeValues values_at(const Sys& system, const ParameterPlaces& places, const TrajectoryPoint<Sys>& point, int beside,
                      const F& f) {
-  using G = typename Sys::GroupoidType;
-  using V = VariedNumber;
-  constexpr int n = Sys::dimension;
   NodeValues out;
-  const int count = 2 * n + int(places.members.size()) + beside;
-  const G& groupoid = system.groupoid;
-  const Vector<double, n> zero = Vector<double, n>::Zero();
+  const int count = 2 * Sys::dimension + int(places.members.size()) + beside;
   for_directions(count, [&](int first) {
-    const VariedMembers varying(places.members, 2 * n - first);
-    const Vector<V, n> v = varied_along(zero, -first);
-    const auto moved = groupoid.tau(groupoid.template cast_object<V>(point.state.object), v);
-    const Vector<V, n> momentum = varied_along(point.state.momentum, n - first);
-    const ObjectOf<G, V> object = groupoid.target(moved);
-    const VariedVector here = f(first, object, varied_tangent_momentum(system, object, momentum),
-                                groupoid.compose(groupoid.template cast<V>(point.configuration), moved));
+    const VariedVector here = varied_at(system, places, point, first,
+                                        [&](const auto& object, const auto& momentum, const auto& configuration) {
+                                          return f(first, object, momentum, configuration);
+                                        });
     if (out.values.size() == 0) {
       out.values.resize(here.size());
       out.derivatives.resize(here.size(), count);

@@ -69,7 +69,7 @@ class CuttableVariational final : public CuttableMotion {
         places_(places_of_parameters(in_part_.plain(), whole_.parameter_names())),
         members_(places_.members),
         observe_(std::move(observe)),
-        is_compared_(places_.members.size() + 1, 0),
+        comparisons_(places_.members.size() + 2),
         here_(whole_.point()),
         size_(time_step(in_part_.plain())),
         rest_(size_) {
@@ -77,18 +77,16 @@ class CuttableVariational final : public CuttableMotion {
     members_.push_back(&in_part_.h);
     const std::size_t asked = places_of_parameters(system, parameters).names.size();
     for (std::size_t j = asked; j < places_.names.size(); ++j) {
-      whole_.hold(j);
-      is_compared_[j] = 1;
+      whole_.comparisons().hold(j);
+      comparisons_.hold(j);
     }
+    comparisons_.hold(places_.names.size());  // the time, which systems read in formulas of it
   }
   CuttableVariational(const CuttableVariational&) = delete;  // derivatives know members by their places
   CuttableVariational& operator=(const CuttableVariational&) = delete;
 
   int states() const override { return 2 * n; }
   int parameters() const override { return whole_.parameters(); }
-  const std::vector<std::string>& parameter_names() const { return places_.names; }
-  const Sys& system() const { return in_part_.plain(); }
-  const TrajectoryPoint<Sys>& point() const { return here_; }
   double time() const override { return here_.time; }
 
   StepReport advance() override {
@@ -159,19 +157,24 @@ class CuttableVariational final : public CuttableMotion {
   }
   void leave_step() override { here_ = whole_.point(); }
 
-  Eigen::VectorXd seen() const override { return observe_in_part().values; }
-  NodeValues observe_in_part() const override {
-    return observe_here([&](const ObservedTimedNode<Sys>& node) { return observe_(node); });
+  Eigen::VectorXd seen() const override {
+    const int none = states() + parameters() + 1;  // of the directions
+    const VariedVector here =
+        detail::varied_at(in_part_.plain(), places_, here_, none,
+                          [&](const auto& object, const auto& momentum, const auto& configuration) {
+                            return observe_({in_part_.plain(), here_.time, object, momentum, configuration});
+                          });
+    Eigen::VectorXd out(here.size());
+    for (Eigen::Index i = 0; i < here.size(); ++i) out(i) = here(i).value;
+    return out;
   }
-  /// A function of where the motion is, by states, parameters and the time.
-  template <class F> NodeValues observe_here(const F& f) const {
+  NodeValues observe_in_part() const override {
     const int time_row = states() + parameters();
-    return detail::values_at(
-        in_part_.plain(), places_, here_, 1,
-        [&](int first, const auto& object, const auto& momentum, const auto& configuration) {
-          const auto time = detail::varied_along(Vector<double, 1>(here_.time), time_row - first);
-          return f(ObservedTimedNode<Sys>{in_part_.plain(), time(0), object, momentum, configuration});
-        });
+    return detail::values_at(in_part_.plain(), places_, here_, 1,
+                             [&](int first, const auto& object, const auto& momentum, const auto& configuration) {
+                               const auto time = detail::varied_along(Vector<double, 1>(here_.time), time_row - first);
+                               return observe_({in_part_.plain(), time(0), object, momentum, configuration});
+                             });
   }
 
   void kick(const Eigen::VectorXd& by) override {
@@ -187,17 +190,19 @@ class CuttableVariational final : public CuttableMotion {
   void set(const std::vector<SetNumber>& numbers) override {
     std::vector<ParameterValue> to;
     for (const SetNumber& each : numbers) to.push_back({each.name, each.value});
-    if (const std::string why = set_parameters(in_part_.plain(), to); !why.empty()) throw std::domain_error(why);
-    set_parameters(whole_.system(), to);
+    if (const std::string why = give(to); !why.empty()) throw std::domain_error(why);
     go_on_after(whole_.integrator().change(share(), [&to](Sys& system) { set_parameters(system, to); }));
-    for (const SetNumber& each : numbers)
-      if (each.varies) vary(std::size_t(place_of(each.name)));
+    for (const SetNumber& each : numbers) {
+      if (!each.varies) continue;
+      whole_.comparisons().vary(std::size_t(place_of(each.name)));
+      comparisons_.vary(std::size_t(place_of(each.name)));
+    }
   }
 
   void serialize(NumberArchive& archive) override {
     restore_numbers(archive);
     whole_.serialize(archive);
-    here_.serialize(system().groupoid, archive);
+    here_.serialize(in_part_.groupoid, archive);
     is_changed_ = false;
   }
 
@@ -211,7 +216,7 @@ class CuttableVariational final : public CuttableMotion {
   };
 
   /// Of the step, or of its rest after a change, that has been gone.
-  double share() const { return gone_ == 0 || rest_ == 0 ? 0 : gone_ / rest_; }
+  double share() const { return gone_ == 0 ? 0 : gone_ / rest_; }
   void go_on_after(const StepReport& report) {
     if (!report.converged()) throw report;
     rest_ -= gone_;
@@ -226,34 +231,29 @@ class CuttableVariational final : public CuttableMotion {
       return unread_;
     }
   }
-  void vary(std::size_t parameter) {
-    whole_.vary(parameter);
-    if (is_varied_.empty()) is_varied_.assign(places_.names.size(), 0);
-    if (!std::exchange(is_varied_[parameter], 1)) is_compared_[parameter] = 0;
-  }
-  /// Once for each parameter that varies, and for the size of the step, which a force may read as a plain number.
+  /// The size of the step is one of them, which a force may read as a plain number.
   void compare(const Step<Sys>& step, const LinearStep& linear) {
-    for (std::size_t j = 0; j < is_compared_.size(); ++j) {
-      if (std::exchange(is_compared_[j], 1)) continue;
-      const bool is_size = j == places_.members.size();
-      detail::compare_with_differences(in_part_.plain(), const_cast<double&>(*members_[is_size ? j + 1 : j]),
-                                       is_size ? "h" : places_.names[j], step, linear,
-                                       2 * n + Eigen::Index(is_size ? j + 1 : j));
-    }
+    comparisons_.take([&](std::size_t j) {
+      detail::compare_with_differences(in_part_.plain(), const_cast<double&>(*members_[j]),  // of the system
+                                       j < places_.names.size() ? places_.names[j] : "h", step, linear,
+                                       2 * n + Eigen::Index(j));
+    });
+  }
+  /// To the systems of parts and of whole steps; why it is refused, if it is.
+  std::string give(const std::vector<ParameterValue>& to) {
+    set_parameters(whole_.system(), to);
+    return set_parameters(in_part_.plain(), to);
   }
   /// What has been set is what it was where the archive was written.
   void restore_numbers(NumberArchive& archive) {
     std::vector<ParameterValue> to;
     for (std::size_t j = 0; j < places_.names.size(); ++j) {
-      const std::string& name = places_.names[j];
-      const double now = *places_.members[j];
-      double value = now;
+      double value = *places_.members[j];
       archive(value);
-      if (value != now) to.push_back({name, value});
+      if (value != *places_.members[j]) to.push_back({places_.names[j], value});
     }
     if (to.empty()) return;
-    set_parameters(in_part_.plain(), to);
-    set_parameters(whole_.system(), to);
+    give(to);
     whole_.integrator().change_here([&to](Sys& system) { set_parameters(system, to); });
   }
 
@@ -263,14 +263,13 @@ class CuttableVariational final : public CuttableMotion {
   ParameterPlaces places_;
   std::vector<const double*> members_;  ///< and when an arrow begins, and its size
   ObserveTimedNode<Sys> observe_;
-  std::vector<char> is_compared_;  ///< which members, and the size, are as differences of a step say
-  std::vector<char> is_varied_;    ///< by what is set
-  TrajectoryPoint<Sys> here_;      ///< in a step, or at a node
-  double size_;                    ///< of the last step
-  double rest_;                    ///< of it, from where parts begin
-  double gone_ = 0;                ///< of it, by the last part
-  std::vector<Arrow> arrows_;      ///< of that part
-  bool is_changed_ = false;        ///< where parts begin
+  Comparisons comparisons_;    ///< of these
+  TrajectoryPoint<Sys> here_;  ///< in a step, or at a node
+  double size_;                ///< of the last step
+  double rest_;                ///< of it, from where parts begin
+  double gone_ = 0;            ///< of it, by the last part
+  std::vector<Arrow> arrows_;  ///< of that part
+  bool is_changed_ = false;    ///< where parts begin
 };
 
 }  // namespace lagroid

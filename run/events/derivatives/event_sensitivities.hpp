@@ -33,7 +33,6 @@
 #include <lagroid/run/events/derivatives/motion_through_events.hpp>
 #include <lagroid/solvers/sensitivity/sensitivities.hpp>
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -157,11 +156,11 @@ requires StepDependent<Sys> || TimeDependent<Sys> EventSensitivities event_sensi
     out.observed_by_parameters = there.observed_by_parameters;
   }
   const auto keep_observed = [&](auto& place) {
-    const Eigen::Index size = std::max<Eigen::Index>(0, place.observed.size() - looked_at - n);
-    place.observed = Eigen::VectorXd(place.observed.segment(size > 0 ? looked_at : 0, size));
-    place.observed_by_start = Eigen::MatrixXd(place.observed_by_start.middleRows(size > 0 ? looked_at : 0, size));
-    place.observed_by_parameters =
-        Eigen::MatrixXd(place.observed_by_parameters.middleRows(size > 0 ? looked_at : 0, size));
+    if (place.observed.size() == 0) return;
+    const Eigen::Index size = place.observed.size() - looked_at - n;
+    place.observed = Eigen::VectorXd(place.observed.segment(looked_at, size));
+    place.observed_by_start = Eigen::MatrixXd(place.observed_by_start.middleRows(looked_at, size));
+    place.observed_by_parameters = Eigen::MatrixXd(place.observed_by_parameters.middleRows(looked_at, size));
   };
   keep_observed(out);
   for (auto& each : out.happened) keep_observed(each);

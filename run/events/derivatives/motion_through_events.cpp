@@ -97,7 +97,7 @@ StepReport MotionThroughEvents::advance() try {
     // From there on it is another motion.
     const Piece& last = pieces_.back();
     if (const StepReport part = motion_->go(last.duration); !part.converged()) return part;
-    if (last.changes) change(last);
+    if (last.changes) change(last, nullptr);
     if (last.ends) {
       is_over_ = true;
       break;
@@ -191,13 +191,24 @@ void MotionThroughEvents::take(const std::vector<Found>& found, double length) {
   }
 }
 
-void MotionThroughEvents::change(const Piece& piece) {
+void MotionThroughEvents::change(const Piece& piece, Derivatives* step) {
   const VariedVector seen = numbers_seen(motion_->seen());
   const Eigen::VectorXd kick = kick_of(piece, seen);
-  const std::vector<SetNumber> numbers = numbers_of(piece, seen);
+  std::vector<SetNumber> numbers = numbers_of(piece, seen);
+  if (step != nullptr && (kick.size() > 0 || !numbers.empty())) {
+    const Eigen::MatrixXd by = changed_by(piece);
+    for (SetNumber& each : numbers) each.varies = !by.row(number_row(each.name) - motion_->momenta()).isZero(0);
+    step->push_back(std::make_shared<ReplacedRows>(motion_->momenta(), by));
+  }
   if (kick.size() > 0) motion_->kick(kick);
   if (!numbers.empty()) motion_->set(numbers);
-  if (const Switching what = switching_of(piece); !what.empty()) motion_->switch_to(what, /*linearised=*/false);
+  const Switching what = switching_of(piece);
+  if (what.empty()) return;
+  if (step != nullptr) {
+    follow_switch(piece, what, *step);
+  } else {
+    motion_->switch_to(what, /*linearised=*/false);
+  }
 }
 
 /// None where nothing is kicked.

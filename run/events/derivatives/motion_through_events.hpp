@@ -122,8 +122,8 @@ class MotionThroughEvents final : public LinearisedMotion {
   std::string conflict_of(const std::vector<Found>& found, std::size_t first, std::size_t last) const;
   std::string named(const Piece& piece) const;
   bool grazes(const Piece& piece) const;
-  /// Kicks, sets and switches, all by what is there before.
-  void change(const Piece& piece);
+  /// Kicks, sets and switches, all by what is there before; adds the derivatives of that to a step, if there is one.
+  void change(const Piece& piece, Derivatives* step);
   Eigen::VectorXd kick_of(const Piece& piece, const VariedVector& seen) const;
   std::vector<SetNumber> numbers_of(const Piece& piece, const VariedVector& seen) const;
   Switching switching_of(const Piece& piece) const;
@@ -137,8 +137,6 @@ class MotionThroughEvents final : public LinearisedMotion {
   bool follow_rest(const std::string& after, bool moves, Derivatives& step);
   /// What becomes of momenta and parameters, by (states, theta, t, s).
   Eigen::MatrixXd changed_by(const Piece& piece) const;
-  /// Adds the change of a piece, and makes it.
-  void follow_change(const Piece& piece, Derivatives& step);
   /// Switches as it does. What holds from then on has to, whatever the start and the numbers.
   void follow_switch(const Piece& piece, const Switching& what, Derivatives& step);
   /// f(t, seen) by (states, theta, t), where the motion is.

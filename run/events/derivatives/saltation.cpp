@@ -157,20 +157,6 @@ Eigen::MatrixXd MotionThroughEvents::changed_by(const Piece& piece) const {
   return out;
 }
 
-void MotionThroughEvents::follow_change(const Piece& piece, Derivatives& step) {
-  const VariedVector seen = numbers_seen(motion_->seen());
-  const Eigen::VectorXd kick = kick_of(piece, seen);
-  std::vector<SetNumber> numbers = numbers_of(piece, seen);
-  if (kick.size() > 0 || !numbers.empty()) {
-    const Eigen::MatrixXd by = changed_by(piece);
-    for (SetNumber& each : numbers) each.varies = !by.row(number_row(each.name) - motion_->momenta()).isZero(0);
-    step.push_back(std::make_shared<ReplacedRows>(int(motion_->momenta()), by));
-  }
-  if (kick.size() > 0) motion_->kick(kick);
-  if (!numbers.empty()) motion_->set(numbers);
-  if (const Switching what = switching_of(piece); !what.empty()) follow_switch(piece, what, step);
-}
-
 void MotionThroughEvents::follow_switch(const Piece& piece, const Switching& what, Derivatives& step) {
   constexpr double noticed = 1e-6;
   const CuttableMotion::Switched switched = motion_->switch_to(what, /*linearised=*/true);
@@ -224,7 +210,7 @@ bool MotionThroughEvents::follow(Derivatives& step, const AtPiece* tell) {
     last = &piece;
     moves = moves_;
     if (piece.changes) {
-      follow_change(piece, step);
+      change(piece, &step);
       motion_->keep();
     }
   }

@@ -62,8 +62,9 @@ class CuttableMotion : public LinearisedMotion {
   virtual void kick(const Eigen::VectorXd& by) = 0;
   /// The place of a number that can be set, among the parameters.
   virtual int place_of(const std::string& number) const {
-    throw std::invalid_argument("nothing of this motion can be set: " + number);
+    throw std::invalid_argument("this motion has no number that can be set: " + number);
   }
+  /// From here on these are what is said of them.
   virtual void set(const std::vector<SetNumber>& numbers) { place_of(numbers.front().name); }
   /// What a switch is to derivatives: of what it does to the momentum, and, by states, parameters and the time, of what
   /// was held until then and of what is held from then on. There are derivatives where the one makes the other vanish.

@@ -248,7 +248,7 @@ TEST(EventSensitivities, OfWhatIsSetAndKickedAreWhatDifferencesTendTo) {
     }
 }
 
-/// The same by steps composed of three and of more arrows, some of them backward in time.
+/// The same by steps composed of five and of seventeen arrows, some of them backward in time.
 TEST(EventSensitivities, OfComposedStepsAreWhatDifferencesTendTo) {
   SmoothEvent<Bob> wall = wall_of_bob();
   wall.set = {{"stiffness", [](const EventNode<Bob>& node) -> VariedNumber { return node.momentum(0) * 0.2 + 3.0; }}};
